@@ -29,8 +29,7 @@ def draw(plan: Plan) -> None:
     hall = rectangle((west_m + 0.2, outer_m / 2, x1 - outer_m / 2, y1 - outer_m / 2))
     _draw_void(plan, hall)
     window = facade.WindowStyle(width_m=1.4, pitch_m=3.2, sill_m=0.9, lintel_m=3.0, radiators=0.2)
-    east = plan.room("hall", (west_m, 0.0, x1, y1))
-    plan.features[-1]["geometry"]["coordinates"] = [west_m + 1.0, y1 - 1.0]
+    east = plan.room("hall", (west_m, 0.0, x1, y1), label=(west_m + 1.0, y1 - 1.0))
     for side in "en":
         facade.windows(plan, east, side, window)
     _wall_niches(plan, west_m, y1)
