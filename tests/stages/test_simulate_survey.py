@@ -445,3 +445,99 @@ def test_meshes_and_models_are_surveyed_on_a_way_of_the_rover_s_own(tmp_path, na
 
 def map_frame(xyz_m, pose):
     return xyz_m @ Rotation.from_quat(pose[4:]).as_matrix().T + pose[1:4]
+
+
+SWAYING = {"sway_m": 0.02, "sway_deg": 3.0}
+TILTED = {"roll_deg": 180.0, "pitch_deg": 20.0}
+
+
+@pytest.mark.parametrize("model", ["ouster64", "uneven32", "rosette"])
+def test_points_of_a_hand_that_sways_lie_on_the_building_whatever_the_sensor(
+    tmp_path, building, model
+):
+    given = {"sensor": {"model": model}, "drive": SWAYING, "mount": TILTED}
+    bag, _, _, trajectory = run(tmp_path, building, **given)
+    way = track(trajectory)
+    seen = [deskewed(t_ns, cloud, way) for t_ns, cloud in read(bag, "/velodyne_points")]
+    off_m = off_the_building_m(building, np.concatenate(seen))
+    assert len(off_m) > 20_000 and off_m.max() < 0.001
+
+
+def sensor_in_the_map(bag, t_ns, pose_topic):
+    """Where the recorded poses say that the sensor was at some moments."""
+    with open_survey([bag], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0) as opened:
+        placed, _, covered = frame_edges.chain_poses(opened.pose_edges(), t_ns, max_gap_s=5.0)
+    assert covered.all()
+    return placed
+
+
+@pytest.mark.parametrize("pose_topic", [None, "/tf"])
+@pytest.mark.parametrize("sway_known", [True, False])
+def test_a_sure_localiser_states_the_sway_that_it_knows(tmp_path, building, sway_known, pose_topic):
+    bag, _, poses, _ = run(
+        tmp_path,
+        building,
+        sensor={"n_azimuth": 16},
+        drive={**SWAYING, "sway_known": sway_known},
+        mount=TILTED,
+        odometry={"scale_share": 0.0},
+    )
+    t_ns, xyz_m, quat = (values[10:-10] for values in track(poses))
+    told = sensor_in_the_map(str(bag), t_ns, pose_topic)
+    off_m = np.linalg.norm(told[:, :3, 3] - xyz_m, axis=1)
+    off = Rotation.from_matrix(told[:, :3, :3]).inv() * Rotation.from_quat(quat)
+    off_deg = np.degrees(off.magnitude())
+    if sway_known:
+        # between poses of 50 Hz the sway is hardly off a straight line; a start or stop of 0.6 m/s
+        # or 60 degrees/s is by half of 10 ms of it
+        assert np.median(off_m) < 0.0005 and np.median(off_deg) < 0.05
+        assert off_m.max() < 0.003 + 0.0005 and off_deg.max() < 0.3 + 0.1
+    else:
+        # three axes of 0.02 m and 3 degrees; the poses' own errors at corners are far smaller
+        assert np.sqrt(np.mean(off_m**2)) == pytest.approx(0.02 * np.sqrt(3), rel=0.2)
+        assert np.sqrt(np.mean(off_deg**2)) == pytest.approx(3.0 * np.sqrt(3), rel=0.2)
+
+
+def test_an_inverted_sensor_sees_the_same_building(tmp_path, building, in_the_map):
+    bag, _, _, trajectory = run(tmp_path, building, mount={"roll_deg": 180.0})
+    way = track(trajectory)
+    seen = np.concatenate([deskewed(t, c, way) for t, c in read(bag, "/velodyne_points")])
+    assert off_the_building_m(building, seen).max() < 0.001
+    # 16 beams lie evenly about the horizon: upside down they see the same floor and ceiling
+    upright = np.concatenate(in_the_map)
+    np.testing.assert_allclose(np.mean(seen < 0.01), np.mean(upright < 0.01), atol=0.01)
+    np.testing.assert_allclose(seen.mean(axis=0), upright.mean(axis=0), atol=0.05)
+
+
+HARD = {
+    "sensor": {"model": "ouster64", "n_azimuth": 16},
+    "mount": TILTED,
+    "errors": {
+        **NOISY,
+        "glass_pass": 0.28,
+        "glass_drop": 0.08,
+        "glass_mirror": 0.04,
+        "glass_return_deg": 8.0,
+        "polished_from_deg": 60.0,
+        "bias_intensity_m": 0.01,
+        "bias_incidence_m": 0.005,
+        "mixed_deg": 0.3,
+        "stray_share": 0.002,
+    },
+    "drive": SWAYING,
+    "odometry": {"random_m": 0.01, "random_deg": 0.5, "slips_per_m": 0.1},
+    "localiser": {"kind": "slam", "walk_m": 0.02, "walk_deg": 0.2, "start_off_m": 0.5},
+    "people": {"count": 2, "standing": 2, "followers": 1},
+}
+
+
+def test_with_everything_on_the_seed_alone_makes_the_bytes(tmp_path, project_root):
+    glazed = project_root / "config/buildings/pavilion.geojson"
+    site = {"waypoints_m": [[2.0, 2.0], [4.0, 2.0]]}
+    first, again = (
+        run(tmp_path / name, glazed, **HARD, site=site, threads=threads)
+        for name, threads in (("a", 1), ("b", 2))
+    )
+    assert [p.read_bytes() for p in first] == [p.read_bytes() for p in again]
+    with open_survey([str(first[0])], min_range_m=0.1, max_range_m=100.0) as opened:
+        assert not opened.planar and len(next(iter(opened.scans([5]))).xyz_m) > 500

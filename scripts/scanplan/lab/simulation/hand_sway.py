@@ -75,7 +75,7 @@ def sway_poses(swaying: Sway, t_ns: ArrayLike) -> FloatArray:
     """Return level_from_base (n, 4, 4), how a base sways about its level pose at some moments."""
     t_s = np.asarray(t_ns, float)[:, None, None] / 1e9
     wave = np.sin(swaying.rate_rad_s * t_s + swaying.phase_rad)
-    moved = (swaying.amplitude * wave).sum(axis=2)
+    moved = np.einsum("nak,ak->na", wave, swaying.amplitude)
     poses = np.tile(np.eye(4), (len(moved), 1, 1))
     poses[:, :3, :3] = tilt_matrices(moved[:, 3:])
     poses[:, :3, 3] = moved[:, :3] + swaying.pivot_m - poses[:, :3, :3] @ swaying.pivot_m

@@ -83,7 +83,8 @@ def simulate_belief(
         Settings of `slam.track_poses`; None where the localiser knows the map, as AMCL does.
     sway : (n, 4, 4) float64 or None
         What both know of level_from_base at the ticks: 6-DoF, as odometry of a hand-held device
-        by its inertial unit. None where they are planar, and know nothing of it.
+        by its inertial unit, and the localiser then speaks at every tick. None where they are
+        planar, and know nothing of it.
     seed : int
     **error_settings
         As for `draw_pose_errors`.
@@ -92,9 +93,11 @@ def simulate_belief(
     -------
     Belief
     """
-    update = choose_updates(
-        world_from_base, distance_m=update_distance_m, angle_rad=np.radians(update_angle_deg)
-    )
+    update = np.arange(len(t_ns))
+    if sway is None:
+        update = choose_updates(
+            world_from_base, distance_m=update_distance_m, angle_rad=np.radians(update_angle_deg)
+        )
     tracked = world_from_base[update]
     if slam is not None:
         tracked = track_poses(tracked, **slam, seed=seed)

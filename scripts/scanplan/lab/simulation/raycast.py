@@ -125,8 +125,8 @@ class RayScene:
     def _opaque_hits(self, rays: FloatArray) -> MeshHits:
         if self._opaque:
             return self._opaque.hits(rays)
-        nothing = np.full((3, len(rays)), np.inf, np.float32)
-        return MeshHits(*nothing, np.zeros((len(rays), 3), np.float32), np.zeros(len(rays), int))
+        never = np.full(len(rays), np.inf, np.float32)
+        return MeshHits(never, never, never, np.zeros_like(rays[:, 3:]), np.zeros(len(rays), int))
 
 
 class _Layer:

@@ -200,9 +200,14 @@ def make_rosette(
     ValueError
         If there is no line or column, or no range between the limits.
     """
-    common = {"rate_hz": rate_hz, "sweep": sweep}
-    limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
-    level = make_lidar([0.0] * n_lines, n_azimuth, **common, **limits)
+    level = make_lidar(
+        [0.0] * n_lines,
+        n_azimuth,
+        rate_hz=rate_hz,
+        sweep=sweep,
+        min_range_m=min_range_m,
+        max_range_m=max_range_m,
+    )
     low_rad, high_rad = np.radians(elevations_deg).tolist()
     swinging = replace(level, rosette=Rosette(low_rad, high_rad, _COLUMNS_PER_SWING))
     return replace(swinging, direction=turn_directions(swinging, 0))

@@ -87,32 +87,33 @@ def find_edges(
     depth_m = range_m.reshape(direction.shape[:2])[:, order]
     rays = direction[:, order]
     is_edge = np.zeros(depth_m.shape, bool)
-    for axis in (0, 1):
-        if depth_m.shape[axis] > 1:
-            is_edge |= _edges_along(axis, rays, depth_m, width_rad)
+    _mark_edges(is_edge, rays, depth_m, width_rad)
+    _mark_edges(is_edge.T, rays.swapaxes(0, 1), depth_m.T, width_rad)
     unordered = np.empty_like(is_edge)
     unordered[:, order] = is_edge
     return unordered.ravel()
 
 
-def _edges_along(axis: int, rays: FloatArray, depth_m: FloatArray, width_rad: float) -> BoolArray:
-    """Return which rays (c, b) are at or near a step of depth from column to column or up."""
-    n = depth_m.shape[axis]
-    step = np.diff(rays, axis=axis)
-    angle_rad = np.sqrt(np.einsum("cbi,cbi->cb", step, step))
-    before_m, after_m = np.take(depth_m, range(n - 1), axis), np.take(depth_m, range(1, n), axis)
+def _mark_edges(
+    is_edge: BoolArray, rays: FloatArray, depth_m: FloatArray, width_rad: float
+) -> None:
+    """Mark the rays (n, k) of rows at or near a step of depth from row to row."""
+    n = len(depth_m)
+    if n < 2:
+        return
     # beside a ray that nothing returns there is nothing to mix with
     with np.errstate(invalid="ignore"):
-        apart_m = np.abs(after_m - before_m)
-    limit_m = np.maximum(_EDGE_M, _EDGE_SLOPE * angle_rad * np.minimum(before_m, after_m))
-    is_step = (apart_m > limit_m) & np.isfinite(apart_m)
+        apart_m = np.abs(np.diff(depth_m, axis=0))
+    row, beam = np.nonzero((apart_m > _EDGE_M) & (apart_m < np.inf))
+    angle_rad = np.linalg.norm(rays[row + 1, beam] - rays[row, beam], axis=1)
+    nearer_m = np.minimum(depth_m[row, beam], depth_m[row + 1, beam])
+    is_step = apart_m[row, beam] > _EDGE_SLOPE * angle_rad * nearer_m
+    row, beam = row[is_step], beam[is_step]
     # so many rays to either side have the step within half their beam
-    reach = max(int(np.ceil(width_rad / 2 / max(np.median(angle_rad), _LEAST_RAD))), 1)
-    counts = np.cumsum(is_step, axis=axis)
-    counts = np.concatenate([np.zeros_like(np.take(counts, [0], axis)), counts], axis)
-    row = np.arange(n)
-    upto = np.take(counts, np.minimum(row + reach, n - 1), axis)
-    return upto > np.take(counts, np.maximum(row - reach, 0), axis)
+    spacing_rad = np.median(np.linalg.norm(rays[n // 2] - rays[n // 2 - 1], axis=-1))
+    reach = max(int(np.ceil(width_rad / 2 / max(spacing_rad, _LEAST_RAD))), 1)
+    for offset in range(1 - reach, reach + 1):
+        is_edge[np.clip(row + offset, 0, n - 1), beam] = True
 
 
 def jitter_rays(
