@@ -144,14 +144,17 @@ def _panes(plan: drawn_floor.DrawnFloor) -> Iterator[tuple[BaseGeometry, float, 
     for wall in plan.walls:
         runs = map(LineString, pairwise(wall.line_m.coords)) if wall.is_glass else ()
         for run in runs:
-            yield from _panes_of_run(plan, run, wall.height_m)
+            # a pane's middle line is drawn up to that of the wall which it ends in
+            solid = drawn_floor.cut_walls(plan, wall.height_m / 2, glass=False)
+            for part in shapely.get_parts(run.difference(solid)):
+                yield from _panes_of_run(plan, part, wall.height_m)
 
 
 def _panes_of_run(
-    plan: drawn_floor.DrawnFloor, run: LineString, height_m: float
+    plan: drawn_floor.DrawnFloor, run: BaseGeometry, height_m: float
 ) -> Iterator[tuple[BaseGeometry, float, float]]:
     """Yield what openings leave of a straight run of a pane: beside them, below and above."""
-    rest: BaseGeometry = run
+    rest = run
     for opening in plan.openings:
         hole = opening.line_m.buffer(DRAWN_M + opening.bow_m, cap_style="flat")
         over = run.intersection(hole)

@@ -192,9 +192,10 @@ def _bodies(plan: DrawnFloor, glass: bool | None = None) -> list[tuple[BaseGeome
     bodies = [(_body(wall), wall.height_m, wall.is_glass) for wall in plan.walls]
     ends = [(wall, *end) for wall in plan.walls for end in _ends(wall)]
     for (a, place_a, run_a, wide_a), (b, place_b, run_b, wide_b) in combinations(ends, 2):
-        if place_a == place_b:
+        # a pane ends at the wall that it meets: there is no corner of both
+        if place_a == place_b and a.is_glass == b.is_glass:
             corner = _thick(LineString([*run_a, *run_b[-2::-1]]), min(wide_a, wide_b))
-            bodies.append((corner, min(a.height_m, b.height_m), a.is_glass and b.is_glass))
+            bodies.append((corner, min(a.height_m, b.height_m), a.is_glass))
     return [body for body in bodies if glass is None or body[2] == glass]
 
 
@@ -224,8 +225,17 @@ def _ends(wall: DrawnWall) -> list[tuple[tuple[float, ...], FloatArray, float]]:
     if wall.line_m.is_closed:
         return []
     xy = shapely.get_coordinates(wall.line_m)
-    runs = ((xy[1::-1], wall.thickness_m), (xy[-2:], wall.last_thickness_m))
+    runs = [(xy[1::-1], wall.thickness_m), (xy[-2:], wall.last_thickness_m)]
+    if wall.end_thickness_m is not None:
+        runs = [(_last_of(run, 0.1 * wide_m), wide_m) for run, wide_m in runs]
     return [(tuple(np.round(run[-1], 3)), run, wide_m) for run, wide_m in runs]
+
+
+def _last_of(run_m: FloatArray, length_m: float) -> FloatArray:
+    """Return the last bit of a run: a tapering wall is as thick as at its end there alone."""
+    way_m = run_m[1] - run_m[0]
+    length_m = min(length_m, float(np.hypot(*way_m)))
+    return np.array([run_m[1] - way_m / np.hypot(*way_m) * length_m, run_m[1]])
 
 
 def _thick(line_m: LineString, thickness_m: float) -> BaseGeometry:

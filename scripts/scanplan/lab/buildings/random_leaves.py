@@ -58,8 +58,11 @@ def hang_leaves(
     Returns
     -------
     building.Building
-        The same object where no leaf is hung.
+        The same object where no leaf is hung; with a note where there is no doorway.
     """
+    if share > 0 and not site.doorways:
+        note = "simulate.site.leaves: the building tells of no door without a leaf; none is hung"
+        return replace(site, notes=(*site.notes, note))
     taken = site.obstacles_m
     if waypoints_m is not None:
         way = LineString(np.asarray(waypoints_m, float)).buffer(1.2 * clearance_m)
