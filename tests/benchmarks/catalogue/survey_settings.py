@@ -36,7 +36,7 @@ SPATIAL: dict[str, Settings] = {
     },
     "ouster64_trolley": {
         "mount": {"height_m": 1.15},
-        "sensor": {"model": "ouster64", "n_azimuth": 512, "rate_hz": 5.0, "max_range_m": 50.0},
+        "sensor": {"model": "ouster64", "n_azimuth": 512, "rate_hz": 4.0, "max_range_m": 50.0},
         "errors": {**PHYSICS, "noise_m": 0.015, "mixed_deg": 0.35},
         "drive": TROLLEY,
         "people": {"standing": 2},
@@ -138,8 +138,8 @@ PLANAR: dict[str, Settings] = {
 }
 """Name to the settings of a 2-D scanner."""
 
-POSES = {"keep_every": 5, "max_step_m": 0.6, "max_turn_deg": 40.0}
-"""Some 300 candidates of a way of 130 m."""
+_STEP_M = 0.7  # from candidate to candidate: the longest ways of 170 m have less than 400
+_TURN_DEG = 40.0
 
 
 def survey_settings(sensor: str, building: str, seed: int) -> Settings:
@@ -147,4 +147,6 @@ def survey_settings(sensor: str, building: str, seed: int) -> Settings:
     made = {**SPATIAL, **PLANAR}[sensor]
     site = {"route": "rooms", "clearance_m": 0.25}
     simulate = {"building": building, "seed": seed, "site": site, "localiser": LOCALISER}
-    return {"poses": POSES, "simulate": {**simulate, **made}}
+    every = made["sensor"]["rate_hz"] * _STEP_M / made["drive"]["speed_m_s"]
+    poses = {"keep_every": max(1, round(every)), "max_step_m": _STEP_M, "max_turn_deg": _TURN_DEG}
+    return {"poses": poses, "simulate": {**simulate, **made}}
