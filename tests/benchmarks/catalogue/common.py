@@ -9,7 +9,7 @@ from . import doors, facade, furnish, layout, pieces
 from .doors import DoorStyle
 from .plan import Box, Plan, Room, Xy, rectangle, side_of
 
-_MAY_CLOSE = 0.6  # of the doors of dead ends, which then stand as any door does
+_MAY_CLOSE = 0.5  # of the doors of dead ends, which then stand as any door does
 
 
 def doors_to_hall(
@@ -21,9 +21,9 @@ def doors_to_hall(
     outwards: bool = False,
     may_close: float = _MAY_CLOSE,
     **options: object,
-) -> int:
-    """Draw a door from every cell to a hallway; some are shut. Return how many were drawn."""
-    count = 0
+) -> list[Box]:
+    """Draw a door from every cell to a hallway; some are shut. Return cells without room for it."""
+    without = []
     for cell in cells:
         line = layout.border(cell, hall)
         if line is None:
@@ -31,8 +31,9 @@ def doors_to_hall(
         driven = bool(plan.rng.random() >= may_close)
         into = layout.middle(hall if outwards else cell)
         values = {"driven": driven, "into": into, **options}
-        count += doors.door(plan, *line, style, **values)  # type: ignore[arg-type]
-    return count
+        if not doors.door(plan, *line, style, **values):  # type: ignore[arg-type]
+            without.append(cell)
+    return without
 
 
 def exit_door(plan: Plan, box: Box, side: str, style: DoorStyle, **options: object) -> bool:
@@ -167,9 +168,13 @@ def washroom(plan: Plan, room: Room, style: DoorStyle, *, side: str) -> None:
         half = 0.19
         box = (bowl[0] - half, bowl[1] - half, bowl[0] + half, bowl[1] + half)
         furnish.put(plan, box, 0.42, "lavatory")
+    before = list(room.inner)
+    before["wsen".index(side)] = front + (0.03 if side in "sw" else -0.03)
+    space = Room(room.name, room.box, (before[0], before[1], before[2], before[3]))
     for wall_side in pieces.free_sides(plan):
         size_m = (0.6, 0.48)
-        basin = furnish.along(plan, room, wall_side, size_m, 0.85, "basin", base_m=0.65)
-        if basin and wall_side != side:
-            pieces.mirror_at(plan, room, wall_side, basin, sill_m=1.05, lintel_m=1.85)
-            return
+        if wall_side != side:
+            basin = furnish.along(plan, space, wall_side, size_m, 0.85, "basin", base_m=0.65)
+            if basin:
+                pieces.mirror_at(plan, space, wall_side, basin, sill_m=1.05, lintel_m=1.85)
+                return

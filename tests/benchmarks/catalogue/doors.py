@@ -10,7 +10,8 @@ from shapely.geometry.base import BaseGeometry
 from .plan import Plan, Xy
 
 ANGLES = ("shut", "ajar", "open", "back")
-_SHARES = (0.2, 0.15, 0.5, 0.15)  # of doors in use, as the bench states them
+# so that of all doors some 20 % are shut, 15 % ajar, 50 % open and 15 % back at the wall
+_SHARES = {False: (0.25, 0.35, 0.3, 0.1), True: (0.0, 0.0, 0.72, 0.28)}
 _APPROACH_M = 0.9  # kept free before and behind a door
 _PLAY_M = 0.005  # between a leaf and its frame
 _SLIVER_M2 = 0.001  # what buffers may overlap by
@@ -41,17 +42,16 @@ class DoorStyle:
 def draw_style(rng: np.random.Generator) -> DoorStyle:
     """Draw what common doors are like: steel or wooden frames, lintels of 2.0 to 2.1 m."""
     return DoorStyle(
-        width_m=float(rng.choice([0.8, 0.85, 0.9, 0.95])),
+        width_m=float(rng.choice([0.85, 0.9, 0.95, 1.0])),
         lintel_m=float(rng.choice([2.0, 2.05, 2.1])),
-        frame_m=float(rng.choice([0.0, 0.02, 0.03, 0.05])),
+        frame_m=float(rng.choice([0.0, 0.02, 0.03, 0.04])),
         leaf_m=float(rng.choice([0.038, 0.04, 0.045])),
     )
 
 
 def draw_angle(rng: np.random.Generator, *, driven: bool) -> float:
-    """Draw how far a leaf stands open, degrees; one that is driven through stands wide open."""
-    shares = np.array(_SHARES) * ((0, 0, 1, 1) if driven else (1, 1, 1, 1))
-    state = str(rng.choice(ANGLES, p=shares / shares.sum()))
+    """Draw how far a leaf stands open, degrees: wide where somebody is to go through."""
+    state = str(rng.choice(ANGLES, p=_SHARES[driven]))
     spans = {"shut": (0, 0), "ajar": (5, 30), "open": (70, 95), "back": (172, 180)}
     low, high = spans[state]
     if driven and state == "open":
@@ -123,6 +123,7 @@ def door(
     angle = draw_angle(plan.rng, driven=driven) if open_deg is None else open_deg
     if recess_m is not None:
         angle = min(angle, 95.0)  # behind the wall's face a leaf meets the jamb
+    share = round(float(plan.rng.uniform(0.85, 1.0)), 2) if driven else 0.0
     wanted = None if into is None else _side(a, b, into)
     for try_deg in dict.fromkeys((angle, min(angle, 90.0))):
         for begin_m in tries:
@@ -131,8 +132,8 @@ def door(
             sides = [wanted] if wanted else list(plan.rng.permutation(["left", "right"]))
             for side in sides:
                 for jamb in [hinge] if hinge else (near, far):
-                    hung = _Hung(a, b, begin_m, wide_m, leaf, try_deg, jamb, str(side))
-                    if _hang(plan, hung, style, lintel, recess_m, driven=driven):
+                    hung = _Hung(a, b, begin_m, wide_m, leaf, try_deg, jamb, str(side), share)
+                    if _hang(plan, hung, style, lintel, recess_m):
                         return True
     return False
 
@@ -149,6 +150,7 @@ class _Hung:
     open_deg: float
     hinge: str
     side: str
+    open_share: float = 0.0
 
     def at(self, along_m: float, left_m: float = 0.0) -> Xy:
         """Return the place so far along the stretch, and so far to its left."""
@@ -163,8 +165,6 @@ def _hang(
     style: DoorStyle,
     lintel_m: float,
     recess_m: float | None,
-    *,
-    driven: bool,
 ) -> bool:
     """Draw a door if its leaf and the ground before it are free."""
     ends = [hung.at(hung.begin_m), hung.at(hung.begin_m + hung.width_m)]
@@ -182,9 +182,6 @@ def _hang(
     if blocked or clash or any(other.intersects(own) for other in plan.kept):
         return False
     sliding = hung.leaf == "sliding"
-    share = 0.0
-    if sliding:
-        share = round(float(plan.rng.uniform(0.85, 1.0)), 2) if driven else 0.0
     plan.add(
         "opening",
         "LineString",
@@ -194,7 +191,7 @@ def _hang(
         lintel_m=lintel_m,
         leaf=hung.leaf,
         open_deg=None if sliding else hung.open_deg,
-        open_share=share if sliding else None,
+        open_share=hung.open_share if sliding else None,
         hinge=hung.hinge,
         side=hung.side,
         leaf_thickness_m=style.leaf_m,
@@ -202,17 +199,19 @@ def _hang(
         frame_m=style.frame_m or None,
         recess_m=recess_m,
     )
-    plan.kept += [approach, *([] if swept.is_empty else [swept])]
+    plan.kept += [approach, swept]
     return True
 
 
 def _crossing_walls(plan: Plan, hung: _Hung) -> list[BaseGeometry]:
-    """Return the walls on the floor but those in line with a door's own."""
+    """Return the walls on the floor but those in line with a door's own and no thicker."""
     line = LineString([hung.at(-100.0), hung.at(100.0)])
+    own_m = plan.thickness_at(hung.at(hung.begin_m + hung.width_m / 2))
     return [
         wall.line_m.buffer(wall.thickness_m / 2, cap_style="flat")
         for wall in plan.walls
-        if any(shapely.Point(xy).distance(line) > 0.05 for xy in wall.line_m.coords)
+        if wall.thickness_m > own_m + 0.005
+        or any(shapely.Point(xy).distance(line) > 0.05 for xy in wall.line_m.coords)
     ]
 
 
@@ -261,7 +260,10 @@ def _standing(hung: _Hung, half_m: float) -> list[LineString]:
     """Return where leaves stand, hinge first; a sliding one before the wall beside its opening."""
     sign = 1 if hung.side == "left" else -1
     if hung.leaf == "sliding":
-        return []
+        slid_m = hung.open_share * hung.width_m
+        low_m = hung.begin_m + (-slid_m if hung.hinge == "start" else slid_m)
+        off_m = sign * (half_m + 0.03)
+        return [LineString([hung.at(low_m, off_m), hung.at(low_m + hung.width_m, off_m)])]
     lines = []
     for hinge_m, length_m, way in _leaves(hung):
         turn = np.radians(hung.open_deg)
@@ -274,7 +276,7 @@ def _standing(hung: _Hung, half_m: float) -> list[LineString]:
 def _swept(hung: _Hung, half_m: float) -> Polygon:
     """Return the ground that leaves sweep between shut and as far as they stand, 90 at least."""
     if hung.leaf == "sliding":
-        return Polygon()
+        return Polygon(_standing(hung, half_m)[0].buffer(0.06, cap_style="flat"))
     sign = 1 if hung.side == "left" else -1
     pieces = []
     for hinge_m, length_m, way in _leaves(hung):

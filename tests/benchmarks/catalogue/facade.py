@@ -7,7 +7,7 @@ import numpy as np
 from shapely import LineString
 
 from . import furnish
-from .plan import Box, Plan, Room, Xy, rectangle, side_of
+from .plan import Box, Plan, Room, Wall, Xy, rectangle, side_of
 
 _APART_M = 0.05  # between two openings at least
 
@@ -54,12 +54,14 @@ def windows(
 def window(
     plan: Plan, a: Xy, b: Xy, sill_m: float, lintel_m: float, *, keep_m: float = 0.0
 ) -> bool:
-    """Draw one window between two places on a wall, unless another opening is there.
+    """Draw one window between two places on a wall, unless an opening or another wall is there.
 
     Nothing stands `keep_m` before it. Returns whether it is drawn.
     """
     span = LineString([a, b])
     if any(span.distance(opening_line(f)) < _APART_M for f in openings(plan)):
+        return False
+    if any(_crosses(wall, span) for wall in plan.walls):
         return False
     ends = [[round(x, 4), round(y, 4)] for x, y in (a, b)]
     values = {"type": "window", "sill_m": sill_m, "lintel_m": round(lintel_m, 3), "glazed": True}
@@ -67,6 +69,15 @@ def window(
     if keep_m:
         plan.kept.append(span.buffer(keep_m, cap_style="flat"))
     return True
+
+
+def _crosses(wall: Wall, span: LineString) -> bool:
+    """Return whether a wall that is not in line with a stretch meets it."""
+    (xa, ya), (xb, yb) = span.coords
+    along = np.subtract((xb, yb), (xa, ya)) / span.length
+    reach = np.subtract(wall.line_m.coords[1], wall.line_m.coords[0]) / wall.line_m.length
+    turned = abs(along[0] * reach[1] - along[1] * reach[0]) > 0.3
+    return turned and wall.line_m.distance(span) < wall.thickness_m / 2 + 0.02
 
 
 def openings(plan: Plan) -> list[dict[str, Any]]:

@@ -7,6 +7,7 @@ from .facade import opening_line, openings
 from .plan import Plan, Wall, Xy
 
 _OUT = {"n": (0.0, 1.0), "s": (0.0, -1.0), "e": (1.0, 0.0), "w": (-1.0, 0.0)}
+_LAP_M = 0.03
 
 
 def cut_niche(plan: Plan, a: Xy, b: Xy, *, side: str, depth_m: float = 0.25) -> bool:
@@ -49,7 +50,9 @@ def cut_niche(plan: Plan, a: Xy, b: Xy, *, side: str, depth_m: float = 0.25) -> 
             if Point(p).distance(Point(q)) > 1e-3:
                 plan.wall(p, q, thickness_m)
         back = -depth_m / 2 * np.array(_OUT[side])
-        p, q = np.add(a, back), np.add(b, back)
+        # into what it stands between, so that no rounding opens a crack
+        lap = _LAP_M * np.subtract(b, a) / span.length
+        p, q = np.add(a, back) - lap, np.add(b, back) + lap
         ends_m = (float(p[0]), float(p[1])), (float(q[0]), float(q[1]))
         plan.wall(*ends_m, round(thickness_m - depth_m, 3))
         return True

@@ -91,7 +91,7 @@ def kitchen(plan: Plan, room: Room, side: str, *, most: int = 5) -> int:
         box = furnish.along(plan, room, side, (0.6, 0.6), 0.9, "kitchen", at_m=at_m, **options)
         if box:
             wall_unit = furnish.rectangle(furnish.against(inner, side, at_m, (0.6, 0.35), 0.01))
-            if not _has_window(plan, wall_unit):
+            if not _has_opening(plan, wall_unit, 0.5):
                 values = {"height_m": 2.15, "base_m": 1.45, "type": "kitchen"}
                 plan.solid("furniture", wall_unit, taken=False, **values)
         count += box is not None
@@ -99,9 +99,9 @@ def kitchen(plan: Plan, room: Room, side: str, *, most: int = 5) -> int:
     return tall + count
 
 
-def _has_window(plan: Plan, shape: BaseGeometry) -> bool:
+def _has_opening(plan: Plan, shape: BaseGeometry, near_m: float) -> bool:
     """Return whether an opening is near a place."""
-    return any(opening_line(o).distance(shape) < 0.5 for o in openings(plan))
+    return any(opening_line(o).distance(shape) < near_m for o in openings(plan))
 
 
 def plant(plan: Plan, room: Room) -> bool:
@@ -145,7 +145,7 @@ def mirror_at(
         line = [(box[0], level), (box[2], level)]
     else:
         line = [(level, box[1]), (level, box[3])]
-    if not _has_window(plan, LineString(line).buffer(0.01)):
+    if not _has_opening(plan, LineString(line), 0.45):
         rounded = [(round(x, 4), round(y, 4)) for x, y in line]
         plan.add("mirror", "LineString", rounded, sill_m=sill_m, lintel_m=lintel_m)
 

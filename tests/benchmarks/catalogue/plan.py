@@ -27,7 +27,7 @@ _TOUCH_M = 0.002  # what things that touch may overlap by after rounding
 
 @dataclass(frozen=True)
 class Wall:
-    """A straight run of a wall, as drawn."""
+    """A straight run of a wall, as drawn; its thickness where it is greatest."""
 
     line_m: LineString
     thickness_m: float
@@ -93,7 +93,8 @@ class Plan:
         """Draw a straight wall."""
         ends = sorted([_rounded(a), _rounded(b)])
         self.add("wall", "LineString", ends, thickness_m=thickness_m, **values)
-        self.walls.append(Wall(LineString(ends), thickness_m))
+        thickest_m = max(thickness_m, values.get("end_thickness_m", 0.0))
+        self.walls.append(Wall(LineString(ends), thickest_m))
 
     def wall_along(self, points: ArrayLike, thickness_m: float, **values: Any) -> None:
         """Draw a wall of several runs; a `curved` one has vertices at most 0.3 m apart."""
@@ -112,18 +113,22 @@ class Plan:
         place = shapely.Point(xy)
         return min(self.walls, key=lambda wall: wall.line_m.distance(place)).thickness_m
 
-    def room(self, name: str, box: Box) -> Room:
-        """Name a room, and return it with the box between the faces of its walls."""
+    def room(self, name: str, box: Box, *, label: Xy | None = None) -> Room:
+        """Name a room, and return it with the box between the faces of its walls.
+
+        `label` is a place in it, where its middle is none.
+        """
         x0, y0, x1, y1 = box
         w, s, e, n = (self._half_at(box, side) for side in "wsen")
         inner = (x0 + w, y0 + s, x1 - e, y1 - n)
-        self.add("room", "Point", _rounded(((x0 + x1) / 2, (y0 + y1) / 2)), name=name)
+        middle = ((x0 + x1) / 2, (y0 + y1) / 2)
+        self.add("room", "Point", _rounded(middle if label is None else label), name=name)
         return Room(name, box, inner)
 
     def _half_at(self, box: Box, side: str) -> float:
         """Return half of the thickness of the thickest wall along a side of a box."""
         line = LineString(side_of(box, side))
-        near = [w for w in self.walls if w.line_m.buffer(0.01).intersection(line).length > 0.1]
+        near = [w for w in self.walls if w.line_m.buffer(0.01).intersection(line).length > 0.04]
         return max((w.thickness_m / 2 for w in near), default=0.0)
 
     def solid(

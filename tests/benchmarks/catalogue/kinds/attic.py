@@ -34,7 +34,11 @@ def draw(plan: Plan) -> None:
     if line:
         into = layout.middle(living)
         doors.door(plan, *line, style, into=into, open_deg=90.0, margin_m=0.15)
-    common.doors_to_hall(plan, [*south, *north], hall, style, may_close=0.4)
+    for cell in common.doors_to_hall(plan, [*south, *north], hall, style, may_close=0.4):
+        # the stairs are before it: from the room beside, away from the slope
+        line = layout.border(north[-2], cell)
+        if line:
+            doors.door(plan, *line, style, into=layout.middle(cell), at_m=0.25)
     common.doors_to_hall(plan, [bath], hall, style, may_close=0.8)
     dormers = _dormers(plan, rooms, extent)
     _roof(plan, extent, dormers)

@@ -110,12 +110,12 @@ def _roof(plan: Plan, extent: Box, block: Box) -> None:
     """Draw a roof that rises from both eaves to the ridge, and trusses below it."""
     _, _, x1, y1 = extent
     ridge_y, eaves_m = y1 / 2, plan.height_m - float(plan.rng.uniform(1.0, 1.5))
-    rise = (plan.height_m - eaves_m) / ridge_y
+    rise = (plan.height_m - 0.01 - eaves_m) / ridge_y
     south = rectangle((0.0, 0.0, x1, ridge_y))
     plan.solid("ceiling", south, taken=False, height_m=round(eaves_m, 3), rise_y=rise)
     for x0, x2, y2 in ((0.0, block[2], block[1]), (block[2], x1, y1)):
         north = rectangle((x0, ridge_y, x2, y2))
-        height_m = round(plan.height_m - 0.001, 3)
+        height_m = round(plan.height_m - 0.01, 3)
         plan.solid("ceiling", north, taken=False, height_m=height_m, rise_y=-rise)
     for x in np.arange(_BAY_M, x1 - 0.1, _BAY_M):
         end_m = block[1] - 0.1 if x < block[2] + 0.2 else y1

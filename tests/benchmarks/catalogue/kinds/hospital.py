@@ -34,6 +34,7 @@ def draw(plan: Plan) -> None:
     )
     for bath, ward in zip(baths, wards, strict=True):
         _bath_walls(plan, bath, ward)
+    _station_front(plan, station, hall)
     names = ["corridor", *(f"ward {k + 1}" for k in range(count)), "store", "station", "kitchen"]
     names += [f"ward {count + 1 + k}" for k in range(len(more))]
     rooms = dict(zip(names, map(_inner_room, [plan] * len(boxes), names, boxes), strict=True))
@@ -42,7 +43,6 @@ def draw(plan: Plan) -> None:
     plain = doors.draw_style(rng)
     common.doors_to_hall(plan, [store, tea], hall, plain, may_close=0.7)
     common.doors_to_hall(plan, more, hall, style, may_close=0.4, margin_m=0.2)
-    _station_front(plan, station, hall)
     options = {"leaf": "double", "width_m": 1.8, "margin_m": 0.12}
     common.exit_door(plan, hall, "e", style, **options)
     window = facade.WindowStyle(width_m=1.5, pitch_m=1.9, sill_m=0.75, lintel_m=2.3)
@@ -54,10 +54,7 @@ def draw(plan: Plan) -> None:
     ceiling_m = float(rng.choice([2.45, 2.5]))
     plan.solid("ceiling", rectangle(rooms["corridor"].inner), taken=False, height_m=ceiling_m)
     for k, bath in enumerate(baths):
-        inner = (bath[0] + 0.08, bath[1] + 0.06, bath[2] - 0.08, bath[3] - 0.08)
-        bathroom = Room(f"bath {k + 1}", bath, inner)
-        plan.add("room", "Point", list(layout.middle(bath)), name=bathroom.name)
-        pieces.bathroom(plan, bathroom)
+        pieces.bathroom(plan, plan.room(f"bath {k + 1}", bath))
     for name, room in rooms.items():
         if name.startswith("ward"):
             x0, y0, x2, y2 = room.inner
@@ -68,10 +65,8 @@ def draw(plan: Plan) -> None:
 
 def _inner_room(plan: Plan, name: str, box: Box) -> Room:
     """Name a room near its window, as its bath may take the middle."""
-    room = plan.room(name, box)
-    if box[1] == 0:
-        plan.features[-1]["geometry"]["coordinates"] = [(box[0] + box[2]) / 2, box[1] + 1.2]
-    return room
+    label = ((box[0] + box[2]) / 2, box[1] + 1.2) if box[1] == 0 else None
+    return plan.room(name, box, label=label)
 
 
 def _bath_of(ward: Box, low_m: float, side: int) -> Box:

@@ -40,19 +40,17 @@ def draw(plan: Plan) -> None:
     baths = [_bath_of(cell, hall, k % 2) for k, cell in enumerate(cells)]
     for bath, cell in zip(baths, cells, strict=True):
         _bath_walls(plan, bath, cell)
-    rooms = [plan.room(f"room {101 + k}", cell) for k, cell in enumerate(cells)]
-    for room in rooms:
-        away = 1.2 if room.box[1] == 0 else -1.2
-        y = room.box[1] + away if away > 0 else room.box[3] + away
-        plan.features[-len(rooms) + rooms.index(room)]["geometry"]["coordinates"] = [
-            (room.box[0] + room.box[2]) / 2, y,
-        ]
+    rooms = []
+    for k, cell in enumerate(cells):
+        label = ((cell[0] + cell[2]) / 2, 1.2 if cell[1] == 0 else y1 - 1.2)
+        rooms.append(plan.room(f"room {101 + k}", cell, label=label))
     corridor = plan.room("corridor", hall)
     for k, (cell, bath) in enumerate(zip(cells, baths, strict=True)):
         driven = k in (0, 3, 5) or bool(rng.random() < 0.3)
         _doors(plan, cell, bath, style, driven=driven)
     line = ((lobby_m, low_m), (lobby_m, high_m))
-    doors.door(plan, *line, style, leaf="double", width_m=1.3, into=(0.0, low_m), open_deg=90.0)
+    wide = {"leaf": "double", "width_m": round(min(1.4, high_m - low_m - 0.3), 2)}
+    doors.door(plan, *line, style, into=(0.0, low_m), open_deg=90.0, **wide)
     common.exit_door(plan, hall, "e", style, width_m=0.95)
     window = facade.WindowStyle(width_m=1.6, pitch_m=2.2, sill_m=0.6, lintel_m=2.3, radiators=0.8)
     for room in rooms:
@@ -112,9 +110,7 @@ def _doors(plan: Plan, cell: Box, bath: Box, style: doors.DoorStyle, *, driven: 
 
 def _furnish(plan: Plan, room: Room, bath: Box, number: int) -> None:
     """Furnish the bath, the wardrobe at the entrance, and the room before the window."""
-    inner = (bath[0] + 0.12, bath[1] + 0.08, bath[2] - 0.12, bath[3] - 0.08)
-    plan.add("room", "Point", list(layout.middle(bath)), name=f"bath {101 + number}")
-    pieces.bathroom(plan, Room("bath", bath, inner), tub=True)
+    pieces.bathroom(plan, plan.room(f"bath {101 + number}", bath), tub=True)
     is_south = room.box[1] == 0
     sleeping = (
         (room.inner[0], room.inner[1], room.inner[2], bath[1] - 0.06)

@@ -35,8 +35,8 @@ def draw(plan: Plan) -> None:
     window = facade.WindowStyle(width_m=1.5, pitch_m=2.4, sill_m=0.8, lintel_m=2.6)
     for side in "sn":
         facade.windows(plan, reading, side, window)
-    common.light(plan, [plan_room for plan_room in _named(plan, office, wash, lecture)], extent,
-                 window)
+    named = _named(plan, office, wash, lecture)
+    common.light(plan, [named[0], named[2]], extent, window)
     facade.surround(plan, extent, storey_m=4.0, far_m=14.0)
     _columns(plan, reading)
     _void(plan, reading)
@@ -75,7 +75,7 @@ def _named(plan: Plan, office: Box, wash: Box, lecture: Box) -> list[Room]:
 def _group_room(plan: Plan, box: Box, number: int) -> Room:
     """Draw a room behind panes at the north facade, with a glass door."""
     x0, y0, x1, y1 = box
-    panes = facade.glass_wall(plan, (x0, y0), (x1, y0), pitch_m=1.05)
+    panes = facade.glass_wall(plan, (x0, y0), (x1, y0), pitch_m=1.2)
     if number == 0:
         plan.wall((x0, y0), (x0, y1), 0.1)
     plan.wall((x1, y0), (x1, y1), 0.1)
@@ -145,7 +145,10 @@ def _reading_places(plan: Plan, reading: Room, bay: tuple[float, float]) -> None
         furnish.table(plan, (x1 - 1.9, float(y), x1 - 0.9, float(y) + 1.2), chairs="we")
     for _ in range(2):
         pieces.plant(plan, reading)
-    pieces.anywhere(plan, reading, (2.2, 0.8), 1.05, "counter", sides="w", gap_m=1.2, front_m=1.0)
+    for at_m in (1.0, 2.0, 3.0):
+        options = {"at_m": at_m, "gap_m": 1.2, "front_m": 1.0}
+        if furnish.along(plan, reading, "w", (2.2, 0.8), 1.05, "counter", **options):
+            break
 
 
 def _furnish_rooms(

@@ -29,8 +29,7 @@ def draw(plan: Plan) -> None:
     hall = rectangle((west_m + 0.2, outer_m / 2, x1 - outer_m / 2, y1 - outer_m / 2))
     _draw_void(plan, hall)
     window = facade.WindowStyle(width_m=1.4, pitch_m=3.2, sill_m=0.9, lintel_m=3.0, radiators=0.2)
-    east = plan.room("hall", (west_m, 0.0, x1, y1))
-    plan.features[-1]["geometry"]["coordinates"] = [west_m + 1.0, y1 - 1.0]
+    east = plan.room("hall", (west_m, 0.0, x1, y1), label=(west_m + 1.0, y1 - 1.0))
     for side in "en":
         facade.windows(plan, east, side, window)
     _wall_niches(plan, west_m, y1)
@@ -53,12 +52,13 @@ def _rotunda(
 
     Returns the directions of these, degrees.
     """
-    count = int(2 * np.pi * radius_m / 0.28)
-    rim = np.linspace(0, 2 * np.pi, count + 1)
-    circle = np.asarray(middle) + radius_m * np.column_stack([np.cos(rim), np.sin(rim)])
-    plan.wall_along(circle, 0.3, curved=True)
     first = float(plan.rng.uniform(20, 70))
     turns = [(first + k * 120 + float(plan.rng.uniform(-20, 20))) % 360 for k in range(3)]
+    # the ring begins where a wall meets it, where no passage is
+    count = int(2 * np.pi * radius_m / 0.28)
+    rim = np.radians(min(turns)) + np.linspace(0, 2 * np.pi, count + 1)
+    circle = np.asarray(middle) + radius_m * np.column_stack([np.cos(rim), np.sin(rim)])
+    plan.wall_along(circle, 0.3, curved=True)
     box = rectangle((0.0, 0.0, west_m, extent[3]))
     for k, turn in enumerate(sorted(turns)):
         way = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])

@@ -21,8 +21,9 @@ def draw(plan: Plan) -> None:
     facade.glass_wall(plan, (0.0, 0.0), (x1 - corner_m, 0.0), pitch_m=2.6, post_m=0.12)
     entrance = ((x1 - corner_m, 0.0), (x1, corner_m))
     plan.wall(*entrance, 0.12)
-    options = {"leaf": "sliding", "driven": bool(rng.random() < 0.5), "margin_m": 0.3}
-    doors.door(plan, *entrance, glass, **options)
+    options = {"driven": bool(rng.random() < 0.5), "margin_m": 0.3}
+    if not doors.door(plan, *entrance, glass, leaf="sliding", **options):
+        doors.door(plan, *entrance, glass, leaf="double", into=(1.0, 3.0), **options)
     spans = layout.parts(0.0, round(x1 * 0.5, 2), 3.4, 2.6, round(x1 * 0.5 - 6.0, 2))
     store, office, wash, kitchen = [(a, back_y, b, y1) for a, b in spans]
     plan.wall((0.0, back_y), (x1, back_y), float(rng.choice([0.12, 0.15])))
