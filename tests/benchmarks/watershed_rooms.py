@@ -19,6 +19,7 @@ _CELL_M = 0.05
 _FEWEST_HITS = 2  # rays that end in a cell that is occupied
 _LEAST_M2 = 1.0  # of a region, and of an obstacle that parts any
 _HALF_DOOR_M = 0.65
+_SLICE_M = (0.2, 1.8)  # above the floor, which is no obstacle, and below lintels
 
 
 def find_watershed_rooms(rays: RaySet) -> list[BaseGeometry]:
@@ -41,7 +42,10 @@ def find_watershed_rooms(rays: RaySet) -> list[BaseGeometry]:
 
 
 def _find_occupied(rays: RaySet, grid: Grid) -> BoolArray:
-    cell = np.floor((rays.xyz_m[:, :2] - grid.low_m) / grid.cell_m).astype(int)
+    above_m = rays.xyz_m[:, 2] - np.nan_to_num(rays.floor_z_m)
+    in_slice = rays.planar | ((above_m > _SLICE_M[0]) & (above_m < _SLICE_M[1]))
+    xy_m = rays.xyz_m[in_slice, :2]
+    cell = np.floor((xy_m - grid.low_m) / grid.cell_m).astype(int)
     is_inside = ((cell >= 0) & (cell < grid.shape[::-1])).all(axis=1)
     hits = np.zeros(grid.shape, int)
     np.add.at(hits, tuple(cell[is_inside, ::-1].T), 1)

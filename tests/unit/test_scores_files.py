@@ -38,9 +38,10 @@ class TestResults:
         write_plan(folder, **given)
 
     def score(self, folder, **given):
-        return score_files.score_results(
+        placed = score_files.place_results(
             folder, folder / "truth.geojson", folder / "truth_poses.tum", **given
         )
+        return score_files.score_results(placed)
 
     def test_a_plan_of_any_version_without_confidence_is_scored(self, tmp_path):
         faces = [(f[:2], f[2:]) for f in evaluation_making.FACES]
@@ -116,7 +117,7 @@ class TestHand:
             openings=[("door", moved(scene_making.DOOR.coords))],
             rooms=[shapely.transform(r, moved) for r in scene_making.ROOMS],
         )
-        row = score_files.score_results_by_hand(tmp_path, truth).measures
+        row = score_files.score_results(score_files.place_results_by_hand(tmp_path, truth)).measures
         assert row["wall_completeness_005"] == pytest.approx(1)
         assert row["room_iou"] == pytest.approx(1, abs=0.01)
         assert (row["hand_doors_true"], row["hand_doors_found"]) == (1, 1)
@@ -167,11 +168,41 @@ class TestRaster:
         # two outlines of 6 m, less the door's two sides
         assert length_m == pytest.approx(2 * 6 - 2 * 0.5)
 
-    def test_rooms_of_any_method_are_scored(self, tmp_path):
-        scene = self.write(tmp_path / "truth.npz")
-        rooms = [shapely.box(0.5, 0.5, 2.5, 1.5), shapely.box(3, 0.5, 4, 1.5)]
-        row = plan_scores.score_plain_rooms(np.array(rooms, object), scene).measures
-        assert (row["rooms_true"], row["room_iou"]) == (1, 1.0)
-        lines_m = np.array([[(0.5, 0.5), (2.5, 0.5)]])
-        row = plan_scores.score_plain_lines(lines_m, scene).measures
-        assert row["wall_completeness_010"] > 2 / 11
+    def place(self, tmp_path):
+        """Registered where the scans 2, 4 and 7 were taken, turned by a quarter."""
+        self.write(tmp_path / "truth.npz")
+        with np.load(tmp_path / "truth.npz") as stored:
+            given = dict(stored)
+        turned = [(y, -x) for x, y in evaluation_making.POSITIONS]
+        way = np.zeros((8, 2))
+        way[evaluation_making.SCAN_IDS] = turned
+        way[:, 0] += 0.2
+        way[:, 1] += 2
+        np.savez(tmp_path / "truth.npz", **{**given, "xy": way})
+        evaluation_making.write_registration(tmp_path)
+        return score_files.place_results_by_raster(tmp_path, tmp_path / "truth.npz")
+
+    def test_the_map_lies_where_its_scans_were_taken(self, tmp_path):
+        placed = self.place(tmp_path)
+        np.testing.assert_allclose(
+            placed.motion[:2, [0, 1, 3]], [[0, 1, 0.2], [-1, 0, 2.0]], atol=1e-9
+        )
+
+    def test_rooms_and_lines_of_any_method_are_scored(self, tmp_path):
+        placed = self.place(tmp_path)
+        back = np.linalg.inv(placed.motion)
+        room = shapely.transform(
+            shapely.box(0.5, 0.5, 2.5, 1.5), lambda xy: xy @ back[:2, :2].T + back[:2, 3]
+        )
+        row = score_files.score_peer_rooms(placed, [room]).measures
+        assert (row["rooms_true"], row["room_iou"]) == (1, pytest.approx(1))
+        line_m = np.array([[(0.5, 0.5), (2.5, 0.5)]]) @ back[:2, :2].T + back[:2, 3]
+        row = score_files.score_peer_lines(placed, line_m).measures
+        # two metres of eleven, and 0.1 m round each of its two corners
+        assert row["wall_completeness_010"] == pytest.approx(2.2 / 11, abs=0.005)
+
+    def test_scans_that_the_truth_has_not_are_another_recording(self, tmp_path):
+        self.write(tmp_path / "truth.npz")
+        evaluation_making.write_registration(tmp_path)
+        with pytest.raises(StageError, match="has 1 places, scan 7"):
+            score_files.place_results_by_raster(tmp_path, tmp_path / "truth.npz")

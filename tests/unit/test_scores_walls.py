@@ -124,6 +124,19 @@ def test_what_is_missed_has_a_row_and_is_asked_where_a_question_is(tmp_path):
     assert rows["length_m"][missed][0] == pytest.approx(4 - 2 * 0.1, abs=0.05)
 
 
+def test_glass_walls_are_complete_apart(tmp_path):
+    scene = scene_making.scene(tmp_path)
+    glass = np.array([row == 0 for row in range(len(FACES))])
+    of_glass = scene_making.replace_scene(scene, glass=glass)
+    everything = sight.see_all(of_glass)
+    hit = scene_making.replace_scene(everything, hit=everything.visible)
+    row = wall_scores.score_lines(lines(FACES[1:]), of_glass, hit).measures
+    for name in ("", "_hit"):
+        assert row[f"wall_completeness{name}_005"] == pytest.approx(1)
+        # both ends of four metres lie at other walls
+        assert row[f"glass_wall_completeness{name}_005"] == pytest.approx(0.1 / 4, abs=0.006)
+
+
 def test_a_truth_that_is_a_part_says_nothing_of_what_is_false(tmp_path):
     whole = scene_making.scene(tmp_path)
     part = scene_making.replace_scene(whole, is_whole=False)

@@ -17,7 +17,7 @@ from scanplan.lab.evaluation.scores import (
 )
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.score import Score, join_scores
-from scanplan.types import Array, Columns, FloatArray
+from scanplan.types import Columns, FloatArray
 
 
 def score_plan(
@@ -73,14 +73,3 @@ def score_plan(
         ]
     score = join_scores(scores)
     return Score(score.measures | flag_scores.score_flags(score.elements), score.elements)
-
-
-def score_plain_rooms(rooms: Array, truth: Scene) -> Score:
-    """Score the rooms (d,) of another method, in the frame of the truth, as those of a plan."""
-    return room_scores.score_rooms(np.asarray(rooms, object), truth)
-
-
-def score_plain_lines(lines_m: FloatArray, truth: Scene, seen: sight.Sight | None = None) -> Score:
-    """Score the lines (n, 2, 2) of another method, in the frame of the truth, as faces."""
-    known = sight.see_all(truth) if seen is None else seen
-    return wall_scores.score_lines(np.asarray(lines_m, float), truth, known)

@@ -2,7 +2,7 @@
 
 A truth.npz: `rooms` (h, w) int labels (0: none; row 0 on top), `m` metres a cell, `xy` (n, 2) where
 each scan was truly taken, `free` (h, w) bool. Cell (r, c) has its middle at x = (c + .5) m,
-y = (h - r - .5) m. Outlines are steps of cells: centimetres mean nothing, corners and angles little.
+y = (h - r - .5) m. Outlines are steps of cells: centimetres mean nothing, corners little.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Openings and leaves of a truth: which are shut, which were driven through, in how thick a wall."""
+"""Openings and leaves of a truth: which are shut, driven through, and in how thick a wall."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -3,10 +3,14 @@
 What a plan of an older commit does not have is left out: confidence, questions, leaves.
 """
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.lab.evaluation import pose_errors, truth_file
@@ -15,8 +19,10 @@ from scanplan.lab.evaluation.scores import (
     hand_truth,
     plan_scores,
     raster_truth,
+    room_scores,
     scene_file,
     sight,
+    wall_scores,
 )
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.score import Score, transform_lines
@@ -30,15 +36,35 @@ _MAX_RANGE_M = 100.0  # input.max_range_m; a sensor of a simulated survey states
 _BAND_M = (0.2, 2.0)  # above the floor and below any ceiling: what lies there is no floor
 
 
-def score_results(
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A dataset's results beside their truth.
+
+    Attributes
+    ----------
+    folder : Path
+        results/<dataset>.
+    scene : scene.Scene
+    seen : sight.Sight
+    motion : (4, 4) float64
+        Level rigid motion from the map to the frame of the truth.
+    """
+
+    folder: Path
+    scene: Scene
+    seen: sight.Sight
+    motion: FloatArray
+
+
+def place_results(
     folder: FilePath,
     truth: FilePath | None = None,
     true_poses: FilePath | None = None,
     *,
     with_points: bool = False,
     max_range_m: float = _MAX_RANGE_M,
-) -> Score:
-    """Score the plan of a simulated survey after one rigid motion onto its truth.
+) -> Placed:
+    """Place a simulated survey's results by the motion of its registered poses onto the true ones.
 
     Parameters
     ----------
@@ -55,44 +81,38 @@ def score_results(
     Raises
     ------
     StageError
-        If a truth cannot be read, or a table of the plan is missing.
+        If a truth cannot be read, or registration.parquet is missing.
     """
     home = Path(folder)
     truth = home / "survey/truth.geojson" if truth is None else truth
     true_poses = home / "survey/truth_poses.tum" if true_poses is None else true_poses
     track = truth_file.read_true_poses(true_poses)
-    motion = fit_results(home, track, true_poses)
+    _, poses, t_ns = _read_kept(home)
+    placed = truth_file.interpolate_true_poses(track, t_ns, true_poses)
+    motion = pose_errors.fit_alignment(poses[:, :3, 3], placed[:, :3, 3])
     scene = scene_file.read_scene(truth, track.xyz_m[:, :2])
     view = truth_file.read_sensor_view(truth, max_range_m=max_range_m)
-    floor_z_m, ceiling_z_m = _read_levels(home)
-    points_m = None
-    if with_points:
-        points_m = transform_lines(_read_points(home, floor_z_m), motion)
-    seen = sight.observe_scene(scene, truth_file.true_pose_matrices(track), view, points_m)
-    return plan_scores.score_plan(
-        read_plan(home),
-        motion,
-        scene,
-        seen,
-        confidence=read_columns(home / "plan/confidence.parquet"),
-        height_m=ceiling_z_m - floor_z_m,
-    )
+    points_m = transform_lines(_read_points(home), motion) if with_points else None
+    survey = truth_file.true_pose_matrices(track)
+    return Placed(home, scene, sight.observe_scene(scene, survey, view, points_m), motion)
 
 
-def score_results_by_hand(folder: FilePath, truth: FilePath) -> Score:
-    """Score the plan of a real recording by a truth.geojson drawn by hand (see `hand_truth`).
+def place_results_by_hand(folder: FilePath, truth: FilePath) -> Placed:
+    """Place a recording's results on a truth drawn by hand, by the small motion that fits best.
 
-    It is moved by the small rigid motion that fits best.
+    Raises
+    ------
+    StageError
+        If the truth cannot be read, or a table of the plan is missing.
     """
     scene = hand_truth.read_hand_scene(truth)
     unmoved = drawn_plan.place_plan(read_plan(folder), np.eye(4))
-    return _score_part(Path(folder), scene, hand_truth.fit_motion(unmoved.faces_m, scene))
+    motion = hand_truth.fit_motion(unmoved.faces_m, scene)
+    return Placed(Path(folder), scene, sight.see_all(scene), motion)
 
 
-def score_results_by_raster(folder: FilePath, truth: FilePath) -> Score:
-    """Score the rooms of a plan by a truth.npz of labels (see `raster_truth`).
-
-    It is moved by the rigid motion of its registered scans onto where they were truly taken.
+def place_results_by_raster(folder: FilePath, truth: FilePath) -> Placed:
+    """Place a map's results by the motion of its registered scans onto where they were taken.
 
     Raises
     ------
@@ -107,24 +127,57 @@ def score_results_by_raster(folder: FilePath, truth: FilePath) -> Score:
             " another; give the truth of this very recording"
         )
     places_m = np.column_stack([scene.track_m[scan_ids], poses[:, 2, 3]])
-    return _score_part(Path(folder), scene, pose_errors.fit_alignment(poses[:, :3, 3], places_m))
+    motion = pose_errors.fit_alignment(poses[:, :3, 3], places_m)
+    return Placed(Path(folder), scene, sight.see_all(scene), motion)
 
 
-def _score_part(home: Path, scene: Scene, motion: FloatArray) -> Score:
-    drawn = read_plan(home)
-    confidence = read_columns(home / "plan/confidence.parquet")
-    floor_z_m, ceiling_z_m = _read_levels(home)
+def score_results(placed: Placed) -> Score:
+    """Score the plan of a dataset's results.
+
+    Returns
+    -------
+    score.Score
+        See `plan_scores.score_plan`; with `hand_doors_true` and `hand_doors_found` where the truth
+        is a part of a floor, and always what the plan was moved by: `moved_x_m` and `moved_y_m` at
+        the map's origin, `moved_deg`.
+
+    Raises
+    ------
+    StageError
+        If a table of the plan is missing.
+    """
+    drawn = read_plan(placed.folder)
+    floor_z_m, ceiling_z_m = _read_levels(placed.folder)
     score = plan_scores.score_plan(
-        drawn, motion, scene, confidence=confidence, height_m=ceiling_z_m - floor_z_m
+        drawn,
+        placed.motion,
+        placed.scene,
+        placed.seen,
+        confidence=read_columns(placed.folder / "plan/confidence.parquet"),
+        height_m=ceiling_z_m - floor_z_m,
     )
-    plan = drawn_plan.place_plan(drawn, motion)
-    moved = {
-        "moved_x_m": float(motion[0, 3]),
-        "moved_y_m": float(motion[1, 3]),
-        "moved_deg": float(np.degrees(np.arctan2(motion[1, 0], motion[0, 0]))),
+    further = {
+        "moved_x_m": float(placed.motion[0, 3]),
+        "moved_y_m": float(placed.motion[1, 3]),
+        "moved_deg": float(np.degrees(np.arctan2(placed.motion[1, 0], placed.motion[0, 0]))),
     }
-    doors = hand_truth.measure_hand_doors(plan, scene)
-    return Score(score.measures | doors | moved, score.elements)
+    if not placed.scene.is_whole:
+        plan = drawn_plan.place_plan(drawn, placed.motion)
+        further |= hand_truth.measure_hand_doors(plan, placed.scene)
+    return Score(score.measures | further, score.elements)
+
+
+def score_peer_rooms(placed: Placed, rooms: Sequence[BaseGeometry]) -> Score:
+    """Score rooms of another method, in the map of the results, as those of a plan."""
+    wkb = np.array([*map(shapely.to_wkb, rooms)], object)
+    moved = drawn_plan.move_shapes(wkb, placed.motion)
+    return room_scores.score_rooms(moved, placed.scene)
+
+
+def score_peer_lines(placed: Placed, lines_m: FloatArray) -> Score:
+    """Score lines (n, 2, 2) of another method, in the map of the results, as faces of a plan."""
+    moved_m = transform_lines(lines_m, placed.motion)
+    return wall_scores.score_lines(moved_m, placed.scene, placed.seen)
 
 
 def read_plan(folder: FilePath) -> dict[str, dict[str, Array]]:
@@ -153,19 +206,6 @@ def read_columns(path: FilePath) -> dict[str, Array] | None:
     return {name: frame[name].to_numpy() for name in frame.columns}
 
 
-def fit_results(folder: FilePath, track: truth_file.TruePoses, origin: FilePath) -> FloatArray:
-    """Return the level rigid motion (4, 4) of a dataset's registered poses onto the true ones.
-
-    Raises
-    ------
-    StageError
-        If registration.parquet is missing, or the true poses are of another survey.
-    """
-    _, poses, t_ns = _read_kept(Path(folder))
-    placed = truth_file.interpolate_true_poses(track, t_ns, origin)
-    return pose_errors.fit_alignment(poses[:, :3, 3], placed[:, :3, 3])
-
-
 def _read_kept(home: Path) -> tuple[IntArray, FloatArray, IntArray]:
     """Return ids (n,), map_from_sensor (n, 4, 4) and stamps (n,) of registered scans."""
     path = home / "registration.parquet"
@@ -189,8 +229,9 @@ def _read_levels(home: Path) -> tuple[float, float]:
     return floor_z_m, ceiling_z_m
 
 
-def _read_points(home: Path, floor_z_m: float) -> FloatArray:
+def _read_points(home: Path) -> FloatArray:
     """Return where (k, 2) registered points lie in the map, those of floor and ceiling left out."""
+    floor_z_m, _ = _read_levels(home)
     store = tables.ScanStore(home / "scans.parquet")
     parts = [np.empty((0, 2))]
     for _, xyz_m in store.scans():

@@ -72,8 +72,9 @@ def score_lines(lines_m: FloatArray, scene: Scene, sight: Sight) -> Score:
     -------
     Score
         `wall_correctness_<cm>` and `wall_completeness_<cm>` at 0.05, 0.10 and 0.20 m, the latter of
-        what could be seen, `wall_completeness_hit_<cm>` of pieces that points lie on,
-        `glass_wall_completeness_010`, `curved_wall_completeness_<cm>`; `wall_drawn_m`, and
+        what could be seen, `wall_completeness_hit_<cm>` of pieces that points lie on, both but for
+        glass walls, of which are `glass_wall_completeness_<cm>` and `_hit_<cm>`;
+        `curved_wall_completeness_<cm>` of curved ones among all; `wall_drawn_m`, and
         `false_<kind>_m` for each of `false_walls.KINDS`. Without elements.
     """
     lines_m = _some_length(lines_m)
@@ -88,7 +89,8 @@ def score_lines(lines_m: FloatArray, scene: Scene, sight: Sight) -> Score:
         measures[f"wall_correctness_{name}"] = near.correctness if is_judged else np.nan
         measures[f"wall_completeness_{name}"] = _share(cells, sight.visible & ~is_glass, found)
         hit = np.zeros(len(found), bool) if sight.hit is None else sight.hit
-        measures[f"wall_completeness_hit_{name}"] = _share(cells, hit, found)
+        measures[f"wall_completeness_hit_{name}"] = _share(cells, hit & ~is_glass, found)
+        measures[f"glass_wall_completeness_hit_{name}"] = _share(cells, hit & is_glass, found)
         measures[f"curved_wall_completeness_{name}"] = _share(
             cells, sight.visible & is_curved, found
         )
