@@ -6,171 +6,48 @@ FLOOR is a file of rough/, RESULTS a dataset's folder with scans.parquet and reg
 What the rough file says, and what the drawing holds, stands in README.md beside this.
 """
 
+import itertools
 import json
 import sys
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pyarrow.parquet as pq
 import shapely
 import shapely.ops
 import yaml
+from shapely.geometry.base import BaseGeometry
 
+from benchmarks.truth.fitting import (
+    STEP_M,
+    Returns,
+    find_supported,
+    fit_edge,
+    fit_line,
+    fit_ring,
+    near_edge,
+    parse_corners,
+    read_returns,
+)
 from scanplan.types import FloatArray
 
 FOLDER = Path(__file__).parent
-_REACH_M = 0.12  # of a rough edge: what is drawn by eye lies within a few centimetres
-_SHORT_M = 0.5  # edges below keep their direction: too few returns to turn them by
-_SHORT_REACH_M = 0.07  # recesses are 0.1 m deep
-_COVERED = 0.15  # least share of an edge, in steps of 0.1 m, with returns: else the rough one stays
-_LATERAL_M = 0.06  # of a return that supports a surface: three times the scanners' noise
-_STEP_M = 0.05  # along a surface
-_ALONG_M = 0.15  # returns this far apart support what lies between them
 _LEAST_M = 0.2  # of a surface
-_AT_GAP_M = 0.06  # what of a wall lies this near to an opening is its jamb
-_RAIL_M = 0.25  # about a rail nothing counts: its posts may be drawn or not
 _LEAST_UNSEEN_M = 0.3
-_MOVED_M = 0.25  # a fitted corner farther from the rough one is a wrong crossing
+_AT_GAP_M = 0.06  # what of a wall lies this near to an opening is its jamb
+_SAME_WALL_M = 0.15  # an opening's ends lie on one outline if both are this near to it
+_RAIL_M = 0.25  # about a rail nothing counts: its posts may be drawn or not
 _RECESS_M = (0.7, 2.2)  # leaves, single and double
 _RECESS_DEPTH_M = 0.45
 _AS_DRAWN = {"columns": "column", "furniture": "furniture", "ignore": "ignore"}
-_PARALLEL = 0.2  # sine of the angle below which two edges have no sharp crossing
+
+Feature = dict[str, Any]
+Outline = tuple[dict[str, str], FloatArray]
+"""What a line is of, for its features' properties, and its corners (n, 2) m."""
 
 
-@dataclass(frozen=True)
-class Edge:
-    """A line by a point (2,) m and a direction (2,), and how many returns it lies on."""
-
-    point_m: FloatArray
-    along: FloatArray
-    n_returns: int
-
-
-@dataclass(frozen=True)
-class Returns:
-    """Registered returns: where they are and whence they were seen, (n, 2) m; the way (k, 2) m."""
-
-    xy_m: FloatArray
-    from_m: FloatArray
-    way_m: FloatArray
-
-
-def read_returns(results: Path) -> Returns:
-    """Read the returns of all kept scans of a dataset, in the map frame."""
-    columns = ["scan_id", "x_m", "y_m", "kept"]
-    poses = pq.read_table(results / "registration.parquet", columns=columns).to_pydict()
-    place = {
-        scan: (x, y)
-        for scan, x, y, kept in zip(*(poses[name] for name in columns), strict=True)
-        if kept
-    }
-    scans = pq.read_table(results / "scans.parquet", columns=columns[:3])
-    ids = scans["scan_id"].to_numpy()
-    xy_m = np.column_stack([scans["x_m"].to_numpy(), scans["y_m"].to_numpy()]).astype(float)
-    is_kept = np.isin(ids, list(place))
-    from_m = np.array([place[scan] for scan in ids[is_kept]])
-    return Returns(xy_m[is_kept], from_m, np.array(list(place.values())))
-
-
-def parse_corners(text: str) -> FloatArray:
-    """Return the corners (n, 2) m that are written "x y, x y, ...\""""
-    return np.array([[float(word) for word in pair.split()] for pair in text.split(",")])
-
-
-def near_edge(
-    returns: Returns, start_m: FloatArray, end_m: FloatArray, reach_m: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return places along an edge and to its left, m, of the returns near it seen from its left."""
-    length_m = float(np.hypot(*(end_m - start_m)))
-    along = (end_m - start_m) / length_m
-    left = np.array([-along[1], along[0]])
-    offset_m = returns.xy_m - start_m
-    s_m, e_m = offset_m @ along, offset_m @ left
-    is_near = (np.abs(e_m) < reach_m) & (s_m > 0) & (s_m < length_m)
-    is_near[is_near] = (returns.from_m[is_near] - start_m) @ left > 0
-    return s_m[is_near], e_m[is_near]
-
-
-def fit_edge(returns: Returns, start_m: FloatArray, end_m: FloatArray) -> Edge:
-    """Return the line through the returns near a rough edge, or the edge where there are few."""
-    length_m = float(np.hypot(*(end_m - start_m)))
-    along = (end_m - start_m) / length_m
-    left = np.array([-along[1], along[0]])
-    is_short = length_m < _SHORT_M
-    s_m, e_m = near_edge(returns, start_m, end_m, _SHORT_REACH_M if is_short else _REACH_M)
-    margin_m = min(0.08, 0.2 * length_m)
-    is_inner = (s_m > margin_m) & (s_m < length_m - margin_m)
-    s_m, e_m = s_m[is_inner], e_m[is_inner]
-    n_cells = len(np.unique(np.floor(s_m / 0.1)))
-    if n_cells < max(2, _COVERED * length_m / 0.1):
-        return Edge(start_m, along, 0)
-    weight = np.ones(len(s_m))
-    slope, height_m = 0.0, 0.0
-    for scale_m in (0.08, 0.05, 0.03, 0.02, 0.02):
-        mean_s, mean_e = np.average(s_m, weights=weight), np.average(e_m, weights=weight)
-        slope = 0.0
-        if not is_short:
-            cov = np.cov(s_m, e_m, aweights=weight)
-            slope = float(np.tan(0.5 * np.arctan2(2 * cov[0, 1], cov[0, 0] - cov[1, 1])))
-        height_m = mean_e - slope * mean_s
-        residual = (e_m - height_m - slope * s_m) / np.hypot(1, slope)
-        weight = 1 / (1 + (residual / scale_m) ** 2)
-    if abs(slope) > np.tan(np.deg2rad(5)):
-        slope, height_m = 0.0, float(np.average(e_m, weights=weight))
-    n_returns = int((np.abs(e_m - height_m - slope * s_m) < 0.03).sum())
-    direction = (along + slope * left) / np.hypot(1, slope)
-    return Edge(start_m + height_m * left, direction, n_returns)
-
-
-def fit_line(returns: Returns, corners_m: FloatArray, *, is_closed: bool) -> FloatArray:
-    """Return the corners (n, 2) m of a rough line or ring with its edges on the returns."""
-    n = len(corners_m)
-    n_edges = n if is_closed else n - 1
-    edges = [
-        fit_edge(returns, corners_m[i], corners_m[(i + 1) % n]) for i in range(n_edges)
-    ]
-    fitted = []
-    for i, corner in enumerate(corners_m):
-        touching = [edges[k] for k in (i - 1, i) if is_closed or 0 <= k < n_edges]
-        fitted.append(_cross(touching, corner))
-    return np.array(fitted)
-
-
-def _cross(edges: list[Edge], corner: FloatArray) -> FloatArray:
-    feet = [edge.point_m + ((corner - edge.point_m) @ edge.along) * edge.along for edge in edges]
-    foot = np.average(feet, axis=0, weights=[edge.n_returns + 1e-3 for edge in edges])
-    if len(edges) == 1:
-        return foot
-    one, other = edges
-    sine = one.along[0] * other.along[1] - one.along[1] * other.along[0]
-    if abs(sine) < _PARALLEL:
-        return foot
-    offset = other.point_m - one.point_m
-    s_m = (offset[0] * other.along[1] - offset[1] * other.along[0]) / sine
-    crossing = one.point_m + s_m * one.along
-    return crossing if np.hypot(*(crossing - corner)) < _MOVED_M else foot
-
-
-def find_supported(returns: Returns, corners_m: FloatArray) -> list[tuple[float, float]]:
-    """Return the stretches from, to in m along a line that returns seen from its left support."""
-    places = []
-    begin_m = 0.0
-    for start_m, end_m in zip(corners_m[:-1], corners_m[1:], strict=True):
-        length_m = float(np.hypot(*(end_m - start_m)))
-        if length_m > 0:
-            places.append(begin_m + near_edge(returns, start_m, end_m, _LATERAL_M)[0])
-        begin_m += length_m
-    s_m = np.unique(np.round(np.concatenate(places) / _STEP_M)) * _STEP_M
-    if len(s_m) == 0:
-        return []
-    runs = np.split(s_m, np.flatnonzero(np.diff(s_m) > _ALONG_M + 1e-9) + 1)
-    ends = [(max(run[0] - _STEP_M / 2, 0), min(run[-1] + _STEP_M / 2, begin_m)) for run in runs]
-    return [(low, high) for low, high in ends if high - low >= _LEAST_M]
-
-
-def _feature(kind: str, geometry: Any, **properties: Any) -> dict[str, Any]:
+def _feature(kind: str, geometry: BaseGeometry, **properties: Any) -> Feature:
     rounded = shapely.set_precision(geometry, 0.001, mode="pointwise")
     return {
         "type": "Feature",
@@ -179,40 +56,44 @@ def _feature(kind: str, geometry: Any, **properties: Any) -> dict[str, Any]:
     }
 
 
-def draw_floor(rough: dict[str, Any], returns: Returns) -> list[dict[str, Any]]:
+def draw_floor(rough: Mapping[str, Any], returns: Returns) -> list[Feature]:
     """Return the features of a floor: its rough rooms and walls on the returns, and the rest."""
-    outlines: list[tuple[str, FloatArray]] = []
+    rooms = [_draw_room(room, returns) for room in rough.get("rooms") or []]
+    outlines = [
+        ({"of": str(room["properties"]["name"])}, np.array(_shape(room).exterior.coords))
+        for room in rooms
+    ]
+    for group, of in (("walls", {}), ("glass", {"material": "glass"})):
+        for text in rough.get(group) or []:
+            fitted_m = fit_line(returns, parse_corners(text), is_closed=False)
+            outlines.append(({"of": "corridor"} | of, fitted_m))
+    openings = [draw_opening(entry, outlines) for entry in rough.get("openings") or []]
+    gaps = shapely.union_all([_shape(one) for one in openings]).buffer(_AT_GAP_M)
+    masked = shapely.union_all([_polygon(text) for text in rough.get("ignore") or []])
+    features = [*rooms, *openings]
+    for outline in outlines:
+        features += _draw_surfaces(outline, returns, shapely.union(gaps, masked))
+    return features + _draw_others(rough, returns)
+
+
+def _draw_room(room: Mapping[str, str], returns: Returns) -> Feature:
+    polygon = shapely.Polygon(fit_ring(returns, parse_corners(room["corners"])))
+    is_entered = bool(shapely.contains_xy(polygon, *returns.way_m.T).any())
+    return _feature("room", polygon, name=room["name"], entered=is_entered)
+
+
+def _draw_others(rough: Mapping[str, Any], returns: Returns) -> list[Feature]:
     features = []
-    for room in rough.get("rooms", []):
-        ring = parse_corners(room["corners"])
-        ring = ring if shapely.LinearRing(ring).is_ccw else ring[::-1]
-        polygon = shapely.Polygon(fit_line(returns, ring, is_closed=True))
-        n_inside = int(shapely.contains_xy(polygon, *returns.way_m.T).sum())
-        features.append(
-            _feature("room", polygon, name=room["name"], entered=n_inside > 0)
-        )
-        outlines.append((room["name"], np.array(polygon.exterior.coords)))
-    n_rooms = len(outlines)
-    for text in rough.get("walls", []) + rough.get("glass", []):
-        fitted = fit_line(returns, parse_corners(text), is_closed=False)
-        outlines.append(("corridor", fitted))
-    first_glass = n_rooms + len(rough.get("walls", []))
-    openings = [draw_opening(entry, outlines) for entry in rough.get("openings", [])]
-    gaps = shapely.union_all([shapely.geometry.shape(one["geometry"]) for one in openings])
-    masked = shapely.union_all([_polygon(text) for text in rough.get("ignore", [])])
-    for i, (name, corners_m) in enumerate(outlines):
-        of = {"of": name} | ({"material": "glass"} if i >= first_glass else {})
-        features += _draw_surfaces(of, corners_m, returns, gaps, masked)
-    features += openings
-    for entry in rough.get("leaves", []):
-        ends = parse_corners(entry)
-        seen = max((ends, ends[::-1]), key=lambda line: fit_edge(returns, *line).n_returns)
-        features.append(_feature("leaf", shapely.LineString(fit_line(returns, seen, is_closed=False))))
-    for text in rough.get("rails", []):
+    for text in rough.get("leaves") or []:
+        ends_m = parse_corners(text)
+        seen = max((ends_m, ends_m[::-1]), key=lambda line: fit_edge(returns, *line).n_returns)
+        leaf = shapely.LineString(fit_line(returns, seen, is_closed=False))
+        features.append(_feature("leaf", leaf))
+    for text in rough.get("rails") or []:
         rail = shapely.LineString(parse_corners(text))
         features += [_feature("rail", rail), _feature("ignore", rail.buffer(_RAIL_M, 2))]
     for name, kind in _AS_DRAWN.items():
-        features += [_feature(kind, _polygon(text)) for text in rough.get(name, [])]
+        features += [_feature(kind, _polygon(text)) for text in rough.get(name) or []]
     return features
 
 
@@ -220,35 +101,36 @@ def _polygon(text: str) -> shapely.Polygon:
     return shapely.Polygon(parse_corners(text))
 
 
-def draw_opening(entry: dict[str, str], outlines: list[tuple[str, FloatArray]]) -> dict[str, Any]:
-    """Return an opening with its ends moved to the nearest outline, where one is near."""
-    ends = shapely.points(parse_corners(entry["ends"]))
+def _shape(feature: Feature) -> Any:
+    return shapely.geometry.shape(feature["geometry"])
+
+
+def draw_opening(entry: Mapping[str, str], outlines: Sequence[Outline]) -> Feature:
+    """Return an opening with its ends moved to the nearest outline, both to one if it is near."""
+    ends = [shapely.Point(end) for end in parse_corners(entry["ends"])]
     lines = [shapely.LineString(corners_m) for _, corners_m in outlines]
-    line = lines[int(np.argmin([shapely.distance(line, ends).sum() for line in lines]))]
-    places = [shapely.ops.nearest_points(line, end)[0] for end in ends]
-    more = {name: entry[name] for name in entry if name not in ("type", "ends")}
-    return _feature("opening", shapely.LineString(places), type=entry["type"], **more)
+    off_m = np.array([shapely.distance(line, ends) for line in lines])
+    both = int(np.argmin(off_m.sum(axis=1)))
+    chosen = [both, both] if off_m[both].max() < _SAME_WALL_M else np.argmin(off_m, axis=0)
+    places = [
+        shapely.ops.nearest_points(lines[i], end)[0] for i, end in zip(chosen, ends, strict=True)
+    ]
+    return _feature("opening", shapely.LineString(places), type=entry["type"])
 
 
-def _draw_surfaces(
-    of: dict[str, str], corners_m: FloatArray, returns: Returns, gaps: Any, masked: Any
-) -> list[dict[str, Any]]:
+def _draw_surfaces(outline: Outline, returns: Returns, holes: BaseGeometry) -> list[Feature]:
+    of, corners_m = outline
     line = shapely.LineString(corners_m)
     stretches = find_supported(returns, corners_m)
     seen = [shapely.ops.substring(line, low, high) for low, high in stretches]
-    holes = shapely.union(gaps.buffer(_AT_GAP_M), masked)
-    features = [
-        _feature("surface", part, **of)
-        for part in shapely.get_parts(shapely.difference(seen, holes))
-        if part.length >= _LEAST_M
-    ]
     rest = line.difference(shapely.union_all(seen).buffer(0.01)).difference(holes)
-    features += [
-        _feature("unseen", part, **of)
-        for part in shapely.get_parts(rest)
-        if part.length >= _LEAST_UNSEEN_M
+    surfaces = shapely.get_parts(shapely.difference(seen, holes))
+    unseen = shapely.get_parts(rest)
+    return [
+        *(_feature("surface", part, **of) for part in surfaces if part.length >= _LEAST_M),
+        *(_feature("unseen", part, **of) for part in unseen if part.length >= _LEAST_UNSEEN_M),
+        *(_feature("recess", edge, **of) for edge in find_recesses(corners_m)),
     ]
-    return features + [_feature("recess", edge, **of) for edge in find_recesses(corners_m)]
 
 
 def find_recesses(corners_m: FloatArray) -> list[shapely.LineString]:
@@ -266,55 +148,48 @@ def find_recesses(corners_m: FloatArray) -> list[shapely.LineString]:
     return bottoms
 
 
-def measure_scatter(features: list[dict[str, Any]], returns: Returns) -> FloatArray:
-    """Return how far returns within 0.1 m of the surfaces, seen from their left, lie off them, m."""
+def measure_scatter(features: Sequence[Feature], returns: Returns) -> FloatArray:
+    """Return how far returns within 0.1 m of surfaces, seen from their left, lie off them, m."""
     off_m = [np.zeros(0)]
     for feature in features:
         if feature["properties"]["kind"] == "surface":
             corners_m = np.array(feature["geometry"]["coordinates"])
-            for start_m, end_m in zip(corners_m[:-1], corners_m[1:], strict=True):
+            for start_m, end_m in itertools.pairwise(corners_m):
                 if (start_m != end_m).any():
-                    off_m.append(near_edge(returns, start_m, end_m, 0.1)[1])
+                    _, e_m = near_edge(returns, start_m, end_m, 0.1)
+                    off_m.append(np.asarray(e_m, np.float64))
     return np.abs(np.concatenate(off_m))
 
 
 def compare_again(
-    rough: dict[str, Any], features: list[dict[str, Any]], returns: Returns
+    rough: Mapping[str, Any], features: Sequence[Feature], returns: Returns
 ) -> list[str]:
     """Return a line for each room that was drawn twice: how far the two drawings differ."""
     lines = []
+    rooms = {one["properties"].get("name"): one for one in features}
     for room in rough.get("again") or []:
-        ring = parse_corners(room["corners"])
-        ring = ring if shapely.LinearRing(ring).is_ccw else ring[::-1]
-        second = shapely.Polygon(fit_line(returns, ring, is_closed=True))
-        first = next(
-            shapely.geometry.shape(one["geometry"])
-            for one in features
-            if one["properties"].get("name") == room["name"]
-        )
+        first = _shape(rooms[room["name"]])
+        second = _shape(_draw_room(room, returns))
         iou = first.intersection(second).area / first.union(second).area
         rim = second.exterior
-        places = [rim.interpolate(s_m) for s_m in np.arange(0, rim.length, _STEP_M)]
-        off_m = shapely.distance(places, first.exterior)
-        half, most = np.percentile(off_m, [50, 90])
+        places = [rim.interpolate(s_m) for s_m in np.arange(0, rim.length, STEP_M)]
+        half, most = np.percentile(shapely.distance(places, first.exterior), [50, 90])
         lines.append(f"{room['name']} again: IoU {iou:.3f}, off by {half:.3f} m, 90 % {most:.3f} m")
     return lines
 
 
-def summarise(features: list[dict[str, Any]], returns: Returns) -> str:
+def summarise(features: Sequence[Feature], returns: Returns) -> str:
     """Return counts, metres and the scatter of a drawing in a line."""
     kinds = [feature["properties"]["kind"] for feature in features]
-    shapes = [shapely.geometry.shape(feature["geometry"]) for feature in features]
     n_entered = sum(feature["properties"].get("entered", False) for feature in features)
-    lengths = {
-        kind: sum(shape.length for shape, of in zip(shapes, kinds, strict=True) if of == kind)
-        for kind in ("surface", "unseen")
-    }
+    length_m = dict.fromkeys(kinds, 0.0)
+    for kind, feature in zip(kinds, features, strict=True):
+        length_m[kind] += _shape(feature).length
     half, most = np.percentile(measure_scatter(features, returns), [50, 90])
-    counts = ", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(set(kinds)))
+    counts = ", ".join(f"{kinds.count(kind)} {kind}" for kind in sorted(length_m))
     return (
-        f"{counts}; {n_entered} rooms entered; surface {lengths['surface']:.0f} m,"
-        f" unseen {lengths['unseen']:.0f} m; returns off it by {half:.3f} m, 90 % {most:.3f} m"
+        f"{counts}; {n_entered} rooms entered; surface {length_m['surface']:.0f} m,"
+        f" unseen {length_m['unseen']:.0f} m; returns off it by {half:.3f} m, 90 % {most:.3f} m"
     )
 
 
