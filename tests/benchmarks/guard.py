@@ -131,12 +131,17 @@ def record(
 def check_out(project: Path, revision: str, folder: Path) -> Path:
     """Return a checkout of a commit of the project, made in the folder where it is missing."""
     code = folder / "code"
-    commit = _git(project, "rev-parse", f"{revision}^{{commit}}")
+    commit = name_commit(project, revision)
     if not code.is_dir():
         _git(project, "clone", "--quiet", "--no-checkout", str(project), str(code))
     _git(code, "fetch", "--quiet", str(project), commit)
     _git(code, "checkout", "--quiet", "--detach", commit)
     return code
+
+
+def name_commit(project: Path, revision: str) -> str:
+    """Return the full name of a commit of the project."""
+    return _git(project, "rev-parse", f"{revision}^{{commit}}")
 
 
 def _git(folder: Path, *words: str) -> str:

@@ -12,6 +12,8 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
+       run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR ...]
+       run.py compare_realistic SCORES SCORES
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
@@ -33,6 +35,12 @@ the plan at a time, and prints what each rule is worth: two drives at once, a fe
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
 reliability diagram in that folder.
+
+`realistic` makes the plans of 84 drives through 42 buildings drawn from seeds, and of real floors
+with a truth, by the code of a commit, and scores them in the terms of the field: tables of measures
+and elements, and a page with a picture of every floor, in FOLDER/scores/COMMIT. Recordings are
+simulated once and kept. Half of the kinds of buildings are for tuning, the others are only reported
+on. `compare_realistic` says what changed between two such folders, element by element.
 
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
@@ -197,7 +205,24 @@ def bench_odometry(folder: str, *names: str) -> None:
     sys.exit(not odometry_bench.bench(ROOT, SETTINGS, kept, recordings, drives))
 
 
+def bench_realistic(folder: str, revision: str = "HEAD", *words: str) -> None:
+    """Plans of realistic buildings and real floors against what is true of them."""
+    import realistic
+
+    data = (ROOT.parent / "shared/data").resolve()
+    realistic.run(ROOT, data, Path(folder).resolve(), revision, words)
+
+
+def compare_realistic(before: str, after: str) -> None:
+    """What two commits make of the same floors, element by element."""
+    import realistic
+
+    realistic.compare(Path(before), Path(after))
+
+
 APART: dict[str, Callable[..., None]] = {
+    "realistic": bench_realistic,
+    "compare_realistic": compare_realistic,
     "ablate": ablate_rules,
     "guard": record_guard,
     "table": print_table,

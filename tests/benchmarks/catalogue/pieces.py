@@ -126,9 +126,7 @@ def bathroom(plan: Plan, room: Room, *, tub: bool = False) -> None:
         anywhere(plan, room, (0.9, 0.9), 0.12, "shower", front_m=0.2)
     for side in free_sides(plan):
         size_m = (0.6, 0.48)
-        box = furnish.along(
-            plan, room, side, size_m, 0.85, "basin", front_m=0.5, base_m=0.65
-        )
+        box = furnish.along(plan, room, side, size_m, 0.85, "basin", front_m=0.5, base_m=0.65)
         if box:
             mirror_at(plan, room, side, box, sill_m=1.1, lintel_m=1.9)
             break
@@ -150,9 +148,7 @@ def mirror_at(
         plan.add("mirror", "LineString", rounded, sill_m=sill_m, lintel_m=lintel_m)
 
 
-def rack(
-    plan: Plan, box: Box, height_m: float, *, levels: int = 4, full: float = 0.7
-) -> bool:
+def rack(plan: Plan, box: Box, height_m: float, *, levels: int = 4, full: float = 0.7) -> bool:
     """Put a rack with shelves and goods on them; return whether it had room."""
     if not plan.is_free(furnish.rectangle(box)):
         return False

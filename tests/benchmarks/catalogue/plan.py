@@ -131,9 +131,7 @@ class Plan:
         near = [w for w in self.walls if w.line_m.buffer(0.01).intersection(line).length > 0.04]
         return max((w.thickness_m / 2 for w in near), default=0.0)
 
-    def solid(
-        self, kind: str, shape: Polygon, *, taken: bool = True, **values: Any
-    ) -> None:
+    def solid(self, kind: str, shape: Polygon, *, taken: bool = True, **values: Any) -> None:
         """Draw a polygon of any kind, and note that it stands there."""
         ring = [_rounded((x, y)) for x, y in shapely.get_coordinates(shape.exterior)]
         self.add(kind, "Polygon", [ring], **values)

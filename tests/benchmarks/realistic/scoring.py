@@ -16,7 +16,6 @@ from realistic import peers, pictures, plans
 from realistic.floors import Floor
 from realistic.recordings import Recorded
 from scanplan.lab.evaluation.scores import score_files
-from scanplan.lab.evaluation.scores.score import Score
 from scanplan.lab.evaluation.truth_file import parse_features
 
 _N_PROCESSES = 2  # of the machine that the bench is timed for
@@ -56,19 +55,20 @@ def _score(
     if row["failed"]:
         return row, None
     folder = results / floor.name
-    score = _score_plan(folder, recorded)
-    row |= score.measures | peers.measure_peers(folder, recorded)
+    placed = _place(folder, recorded)
+    score = score_files.score_results(placed)
+    row |= score.measures | peers.measure_peers(placed)
     return row, score.elements
 
 
-def _score_plan(folder: Path, recorded: Recorded) -> Score:
+def _place(folder: Path, recorded: Recorded) -> score_files.Placed:
     if recorded.true_poses is not None:
-        return score_files.score_results(
+        return score_files.place_results(
             folder, recorded.truth, recorded.true_poses, with_points=True
         )
     if recorded.truth.suffix == ".npz":
-        return score_files.score_results_by_raster(folder, recorded.truth)
-    return score_files.score_results_by_hand(folder, recorded.truth)
+        return score_files.place_results_by_raster(folder, recorded.truth)
+    return score_files.place_results_by_hand(folder, recorded.truth)
 
 
 def read_true_features(recorded: Recorded, building: Path | None) -> list[pictures.TrueFeature]:

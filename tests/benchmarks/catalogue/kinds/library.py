@@ -108,7 +108,10 @@ def _void(plan: Plan, reading: Room) -> None:
     x0, y0, x1, y1 = reading.inner
     x, y = x0 + (x1 - x0) * 0.47, y0 + (y1 - y0) * 0.475
     half_x, half_y = float(plan.rng.uniform(1.6, 2.0)), float(plan.rng.uniform(0.85, 1.0))
-    box = (*(round(x - half_x, 3), round(y - half_y, 3)), *(round(x + half_x, 3), round(y + half_y, 3)))
+    box = (
+        *(round(x - half_x, 3), round(y - half_y, 3)),
+        *(round(x + half_x, 3), round(y + half_y, 3)),
+    )
     plan.solid("void", rectangle(box), depth_m=3.6)
     wall_m = 0.1
     rim = (box[0] - wall_m / 2, box[1] - wall_m / 2, box[2] + wall_m / 2, box[3] + wall_m / 2)
@@ -134,8 +137,18 @@ def _stacks(plan: Plan, reading: Room, meeting: list[Room]) -> None:
             pieces.rack(plan, box, tall_m, levels=5, full=0.9)
     for side in "sn":
         size_m = (0.9, 0.35)
-        furnish.row(plan, reading, side, size_m, 2.0, "cupboard", most=4, gap_m=0.06,
-                    span=(x1 - x0 - 5.5, 1e9), front_m=0.7)
+        furnish.row(
+            plan,
+            reading,
+            side,
+            size_m,
+            2.0,
+            "cupboard",
+            most=4,
+            gap_m=0.06,
+            span=(x1 - x0 - 5.5, 1e9),
+            front_m=0.7,
+        )
 
 
 def _reading_places(plan: Plan, reading: Room, bay: tuple[float, float]) -> None:

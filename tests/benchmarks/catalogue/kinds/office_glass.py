@@ -46,7 +46,11 @@ def draw(plan: Plan) -> None:
     doors.door(plan, (0.0, high_m), (core[2], high_m), plain, margin_m=0.3)
     doors.door(
         *(plan, (x1, low_m), (x1, high_m), style),
-        leaf="double", width_m=1.6, driven=False, open_deg=0.0, margin_m=0.1,
+        leaf="double",
+        width_m=1.6,
+        driven=False,
+        open_deg=0.0,
+        margin_m=0.1,
     )
     facade.surround(plan, extent, storey_m=0.15, far_m=8.0)
     plan.solid("floor", rectangle(rooms[0].inner), taken=False, polished=True)
@@ -77,9 +81,7 @@ def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list]:
     return fronts
 
 
-def _columns(
-    plan: Plan, south: list[Box], north: list[Box], low_m: float, high_m: float
-) -> None:
+def _columns(plan: Plan, south: list[Box], north: list[Box], low_m: float, high_m: float) -> None:
     """Draw round columns behind the facade and along the corridor."""
     size_m = float(plan.rng.choice([0.3, 0.4]))
     for row, y in ((south, 0.9), (north, north[0][3] - 0.9)):
