@@ -37,7 +37,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
     results = plans.make_plans(project, revision, folder, recorded)
     measures, elements = scoring.score_floors(chosen, recorded, results)
     commit = guard.name_commit(project, revision)
-    home = folder / SCORES / commit
+    home = folder / SCORES / commit[:12]
     home.mkdir(parents=True, exist_ok=True)
     for name, table in (("measures", measures), ("elements", elements)):
         table.to_parquet(home / f"{name}.parquet", index=False)
@@ -47,7 +47,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
         floor.name: scoring.read_true_features(recorded[floor.name], _drawing(floor, folder))
         for floor in chosen
     }
-    page.write_page(home / "index.html", f"Plans of {commit}", measures, elements, truths)
+    page.write_page(home / "index.html", f"Plans of {commit[:12]}", measures, elements, truths)
     summary.print_summary(measures)
     print(f"realistic: {home / 'index.html'}", flush=True)
 

@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import shapely
 
+from scanplan.lab.evaluation.scores import score
 from scanplan.types import Array, BoolArray
 
 _NEAR_M = 0.15  # wider than faces of one wall err, narrower than a wall: one element in two plans
@@ -80,7 +81,7 @@ def _find_changes(before: Path, after: Path) -> Iterator[Change]:
 def _read_errors(folder: Path) -> dict[str, Mapping[str, Array]]:
     """Return the columns of the elements that are wrong or missing, by floor."""
     elements = pq.read_table(folder / "elements.parquet").to_pandas()
-    wrong = elements[elements["verdict"] != "right"]
+    wrong = elements[~elements["verdict"].isin(("right", *score.UNCOUNTED))]
     floors = {str(name): rows for name, rows in wrong.groupby("floor")}
     none = wrong.iloc[:0]
     return {

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from realistic import pictures
+from scanplan.lab.evaluation.scores import score
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,6 +36,7 @@ HEADLINES = {
     "total_cpu_s": "processor s",
 }
 """Measure to its heading; see `scanplan.lab.evaluation.scores`."""
+_WHOLE = ("face", "wall")
 _STYLE = """
 body{font:14px/1.45 system-ui,sans-serif;margin:1.5rem;color:#222}
 table{border-collapse:collapse;margin:.6rem 0}
@@ -111,18 +113,20 @@ def _list_errors(elements: "pd.DataFrame", measures: "pd.DataFrame") -> Iterator
     halves = measures.set_index("floor")["half"]
     of_half = elements["floor"].map(halves)
     for half in dict.fromkeys(measures["half"]):
-        rows = elements[of_half == half]
+        # faces and walls are in their stretches, which are what is wrong of them
+        is_shown = ~elements["table"].isin(_WHOLE) & ~elements["verdict"].isin(score.UNCOUNTED)
+        rows = elements[(of_half == half) & is_shown]
         wrong = rows[rows["verdict"] != "right"]
         if wrong.empty:
             continue
-        whole = rows.groupby("table").agg(n=("size", "size"), size=("size", "sum"))
+        whole = rows.groupby("table").size()
         kinds = wrong.groupby(["table", "verdict"]).agg(
             n=("size", "size"),
             size=("size", "sum"),
             floors=("floor", "nunique"),
             flagged=("flagged", "mean"),
         )
-        kinds["share"] = [n / whole.loc[table, "n"] for (table, _), n in kinds["n"].items()]
+        kinds["share"] = [n / whole[table] for (table, _), n in kinds["n"].items()]
         lines = [
             f"<tr><td>{table}: {verdict}</td><td>{row['n']:.0f}</td><td>{row['size']:.0f}</td>"
             f"<td>{row['share']:.0%}</td><td>{row['flagged']:.0%}</td><td>{row['floors']:.0f}</td>"

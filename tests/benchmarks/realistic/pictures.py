@@ -21,6 +21,8 @@ COLOURS = {
     "other": "#d0006f",
     "wrong_type": "#008000",
     "missed": "#1f60ff",
+    "unknown": "#b0b0b0",
+    "not_entered": "#b0b0b0",
 }
 """Verdict to colour; what is right is dark."""
 _RIGHT = "#303030"
