@@ -130,7 +130,8 @@ def _keep_pieces(cells: FaceCells, hit: BoolArray) -> BoolArray:
     """Return the cells of pieces of half a metre or more that points hit, small gaps closed."""
     kept = np.zeros(len(hit), bool)
     for first, last in zip(cells.first[:-1], cells.first[1:], strict=True):
-        n_gap = int(_CLOSED_M / cells.length_m[first])
+        # a gap is no longer than its face, however short that one's cells are
+        n_gap = int(min(_CLOSED_M / cells.length_m[first], last - first))
         row = np.pad(hit[first:last], n_gap)
         closed = ndimage.binary_closing(row, np.ones(n_gap + 1)) if n_gap else row
         label = np.zeros(len(closed), np.int64)
