@@ -125,9 +125,7 @@ def draw_flight_down(plan: Plan, box: Box, descends: str) -> None:
     draw_flight(plan, box, descends, rise_m, taken=False)
 
 
-def draw_flight(
-    plan: Plan, box: Box, ascends: str, rise_m: float, *, taken: bool = True
-) -> None:
+def draw_flight(plan: Plan, box: Box, ascends: str, rise_m: float, *, taken: bool = True) -> None:
     """Draw stairs over a box, ascending towards a side; into a void if `rise_m` is negative."""
     x0, y0, x1, y1 = box
     corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]

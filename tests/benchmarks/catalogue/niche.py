@@ -57,4 +57,3 @@ def cut_niche(plan: Plan, a: Xy, b: Xy, *, side: str, depth_m: float = 0.25) -> 
         plan.wall(*ends_m, round(thickness_m - depth_m, 3))
         return True
     return False
-

@@ -68,13 +68,13 @@ def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
         axes.add_patch(patch)
         if kind in (*_DEEP, "stairs", "beam"):
             middle = np.mean(xy[0][:-1], axis=0)
-            axes.text(*middle, kind, fontsize=6, color="#3355aa", ha="center")
+            axes.text(middle[0], middle[1], kind, fontsize=6, color="#3355aa", ha="center")
     elif kind == "mirror":
         axes.plot(*np.array(xy).T, color="magenta", lw=3, zorder=8)
     elif kind == "facade":
         axes.plot(*np.array(xy).T, color="#777777", lw=2)
     elif kind == "room":
-        axes.text(*xy, values["name"], fontsize=7, ha="center", zorder=10, color="navy")
+        axes.text(xy[0], xy[1], values["name"], fontsize=7, ha="center", zorder=10, color="navy")
 
 
 def _draw_opening(axes: Axes, values: dict, xy: np.ndarray, walls: list[dict]) -> None:

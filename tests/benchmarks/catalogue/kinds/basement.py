@@ -71,8 +71,14 @@ def _doors(
         doors.door(plan, *line, steel, into=layout.middle(stair), driven=True, margin_m=0.25)
     line = layout.border(heating, hall)
     if line:
-        doors.door(plan, *line, steel, into=layout.middle(heating), margin_m=0.25,
-                   driven=bool(rng.random() < 0.6))
+        doors.door(
+            plan,
+            *line,
+            steel,
+            into=layout.middle(heating),
+            margin_m=0.25,
+            driven=bool(rng.random() < 0.6),
+        )
     common.doors_to_hall(plan, south, hall, steel, may_close=0.35, margin_m=0.25)
     common.doors_to_hall(plan, cells, hall, boards, may_close=0.75, outwards=False, margin_m=0.08)
     common.exit_door(plan, hall, "e", steel, recess_m=0.1, margin_m=0.2)

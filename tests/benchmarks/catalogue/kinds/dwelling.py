@@ -22,8 +22,7 @@ def draw(plan: Plan) -> None:
     living, kitchen = (0.0, 0.0, living_m, high_m), (0.0, high_m, kitchen_m, y1)
     south = layout.strip(rng, (living_m, x1), (0.0, low_m), (2.8, 4.2))
     bath, store, bedroom = [
-        (a, high_m, b, y1)
-        for a, b in layout.parts(kitchen_m, 2.2, 1.2, x1 - kitchen_m - 3.4)
+        (a, high_m, b, y1) for a, b in layout.parts(kitchen_m, 2.2, 1.2, x1 - kitchen_m - 3.4)
     ]
     boxes = [hall, living, kitchen, *south, bath, store, bedroom]
     outer_m, inner_m = float(rng.choice([0.3, 0.365, 0.42])), float(rng.choice([0.1, 0.115]))
@@ -37,8 +36,12 @@ def draw(plan: Plan) -> None:
     window = facade.WindowStyle(
         width_m=float(rng.choice([1.0, 1.2, 1.5])), pitch_m=2.4, lintel_m=plan.height_m - 0.3
     )
-    common.light(plan, [r for n, r in rooms.items() if n not in ("hallway", "living", "store")],
-                 extent, window)
+    common.light(
+        plan,
+        [r for n, r in rooms.items() if n not in ("hallway", "living", "store")],
+        extent,
+        window,
+    )
     _light_living(plan, rooms["living"], window)
     facade.surround(plan, extent, storey_m=3.0, far_m=12.0)
     _furnish(plan, rooms)

@@ -29,9 +29,7 @@ def draw(plan: Plan) -> None:
     baths = [_bath_of(ward, low_m, k % 2) for k, ward in enumerate(wards)]
     plan.shell(extent, float(rng.choice([0.36, 0.4])))
     boxes = [hall, *wards, store, station, tea, *more]
-    layout.draw_partitions(
-        plan, boxes, lambda i, j: None if {i, j} == {0, count + 2} else 0.15
-    )
+    layout.draw_partitions(plan, boxes, lambda i, j: None if {i, j} == {0, count + 2} else 0.15)
     for bath, ward in zip(baths, wards, strict=True):
         _bath_walls(plan, bath, ward)
     _station_front(plan, station, hall)
@@ -83,9 +81,7 @@ def _bath_walls(plan: Plan, bath: Box, ward: Box) -> None:
     plan.wall((x, y0), (x, y1), 0.1)
 
 
-def _ward_doors(
-    plan: Plan, ward: Box, bath: Box, style: doors.DoorStyle, *, driven: bool
-) -> None:
+def _ward_doors(plan: Plan, ward: Box, bath: Box, style: doors.DoorStyle, *, driven: bool) -> None:
     """Draw the wide door to the corridor beside the bath, and the bath's, which may slide."""
     rng = plan.rng
     low_m = bath[3]

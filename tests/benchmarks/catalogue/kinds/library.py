@@ -1,5 +1,7 @@
 """A library: stacks, an open stairwell with a parapet, a bowed reading bay, rooms of glass."""
 
+from typing import Any
+
 import numpy as np
 
 from .. import common, doors, facade, furnish, layout, pieces
@@ -83,8 +85,8 @@ def _group_room(plan: Plan, box: Box, number: int) -> Room:
     glass = doors.DoorStyle(0.9, 2.1, frame_m=0.03, leaf_m=0.02, glass=True)
     driven = number == 0 or bool(plan.rng.random() < 0.5)
     for k in plan.rng.permutation(len(panes)):
-        options = {"into": layout.middle(box), "driven": driven, "margin_m": 0.03}
-        if doors.door(plan, *panes[k], glass, **options):
+        options: Any = {"into": layout.middle(box), "driven": driven, "margin_m": 0.03}
+        if doors.door(plan, *panes[int(k)], glass, **options):
             break
     low_m = float(plan.rng.choice([2.6, 2.75]))
     plan.solid("ceiling", rectangle(room.inner), taken=False, height_m=low_m)
@@ -108,7 +110,10 @@ def _void(plan: Plan, reading: Room) -> None:
     x0, y0, x1, y1 = reading.inner
     x, y = x0 + (x1 - x0) * 0.47, y0 + (y1 - y0) * 0.475
     half_x, half_y = float(plan.rng.uniform(1.6, 2.0)), float(plan.rng.uniform(0.85, 1.0))
-    box = (*(round(x - half_x, 3), round(y - half_y, 3)), *(round(x + half_x, 3), round(y + half_y, 3)))
+    box = (
+        *(round(x - half_x, 3), round(y - half_y, 3)),
+        *(round(x + half_x, 3), round(y + half_y, 3)),
+    )
     plan.solid("void", rectangle(box), depth_m=3.6)
     wall_m = 0.1
     rim = (box[0] - wall_m / 2, box[1] - wall_m / 2, box[2] + wall_m / 2, box[3] + wall_m / 2)
@@ -134,8 +139,18 @@ def _stacks(plan: Plan, reading: Room, meeting: list[Room]) -> None:
             pieces.rack(plan, box, tall_m, levels=5, full=0.9)
     for side in "sn":
         size_m = (0.9, 0.35)
-        furnish.row(plan, reading, side, size_m, 2.0, "cupboard", most=4, gap_m=0.06,
-                    span=(x1 - x0 - 5.5, 1e9), front_m=0.7)
+        furnish.row(
+            plan,
+            reading,
+            side,
+            size_m,
+            2.0,
+            "cupboard",
+            most=4,
+            gap_m=0.06,
+            span=(x1 - x0 - 5.5, 1e9),
+            front_m=0.7,
+        )
 
 
 def _reading_places(plan: Plan, reading: Room, bay: tuple[float, float]) -> None:
@@ -146,7 +161,7 @@ def _reading_places(plan: Plan, reading: Room, bay: tuple[float, float]) -> None
     for _ in range(2):
         pieces.plant(plan, reading)
     for at_m in (1.0, 2.0, 3.0):
-        options = {"at_m": at_m, "gap_m": 1.2, "front_m": 1.0}
+        options: Any = {"at_m": at_m, "gap_m": 1.2, "front_m": 1.0}
         if furnish.along(plan, reading, "w", (2.2, 0.8), 1.05, "counter", **options):
             break
 

@@ -1,9 +1,11 @@
 """An office of glass: curtain walls outside, panes between rooms, a floor that shines."""
 
+from typing import Any
+
 import numpy as np
 
 from .. import common, doors, facade, furnish, layout, pieces
-from ..plan import Box, Plan, Room, rectangle
+from ..plan import Box, Plan, Room, Xy, rectangle
 
 
 def draw(plan: Plan) -> None:
@@ -39,14 +41,18 @@ def draw(plan: Plan) -> None:
     for cell, options in zip(cells, panes, strict=True):
         driven = bool(rng.random() < 0.7)
         for pane in options:
-            values = {"into": layout.middle(cell), "driven": driven, "margin_m": 0.04}
+            values: Any = {"into": layout.middle(cell), "driven": driven, "margin_m": 0.04}
             if doors.door(plan, *pane, style, **values):
                 break
     plain = doors.draw_style(rng)
     doors.door(plan, (0.0, high_m), (core[2], high_m), plain, margin_m=0.3)
     doors.door(
         *(plan, (x1, low_m), (x1, high_m), style),
-        leaf="double", width_m=1.6, driven=False, open_deg=0.0, margin_m=0.1,
+        leaf="double",
+        width_m=1.6,
+        driven=False,
+        open_deg=0.0,
+        margin_m=0.1,
     )
     facade.surround(plan, extent, storey_m=0.15, far_m=8.0)
     plan.solid("floor", rectangle(rooms[0].inner), taken=False, polished=True)
@@ -66,7 +72,7 @@ def _shell(plan: Plan, extent: Box, core: Box) -> None:
     plan.wall((x0, y1), (core[2], y1), 0.25)
 
 
-def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list]:
+def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list[tuple[Xy, Xy]]]:
     """Draw the glass fronts of rooms; return the panes of each, for its door."""
     fronts = []
     for cell in cells:
@@ -77,9 +83,7 @@ def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list]:
     return fronts
 
 
-def _columns(
-    plan: Plan, south: list[Box], north: list[Box], low_m: float, high_m: float
-) -> None:
+def _columns(plan: Plan, south: list[Box], north: list[Box], low_m: float, high_m: float) -> None:
     """Draw round columns behind the facade and along the corridor."""
     size_m = float(plan.rng.choice([0.3, 0.4]))
     for row, y in ((south, 0.9), (north, north[0][3] - 0.9)):

@@ -35,7 +35,8 @@ def draw(plan: Plan) -> None:
     rooms = list(map(plan.room, names, boxes))
     style = doors.DoorStyle(
         *(float(rng.choice([0.95, 1.0])), float(rng.choice([2.2, 2.3]))),
-        frame_m=float(rng.choice([0.06, 0.1])), leaf_m=0.045,
+        frame_m=float(rng.choice([0.06, 0.1])),
+        leaf_m=0.045,
     )
     _doors(plan, hall, salon, stair, south, north, style)
     window = facade.WindowStyle(
@@ -93,8 +94,12 @@ def _doors(
             is_wide = rng.random() < 0.5
             driven = bool(rng.random() < 0.6)
             doors.door(
-                *(plan, *line, style), into=layout.middle(b), driven=driven, margin_m=0.5,
-                leaf="double" if is_wide else "hinged", width_m=1.4 if is_wide else 0.95,
+                *(plan, *line, style),
+                into=layout.middle(b),
+                driven=driven,
+                margin_m=0.5,
+                leaf="double" if is_wide else "hinged",
+                width_m=1.4 if is_wide else 0.95,
             )
     line = layout.border(salon, north[-1])
     if line:

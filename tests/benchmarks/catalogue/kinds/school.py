@@ -98,8 +98,9 @@ def _furnish_class(plan: Plan, room: Room) -> None:
             x = x if front == "w" else x0 + x1 - x - 0.6
             y = y0 + 0.6 + j * 1.5
             if y + 1.3 < y1 - 0.9:
-                furnish.table(plan, (x, y, x + 0.6, y + 1.3), chairs=pieces.opposite(front),
-                              clear_m=0.3)
+                furnish.table(
+                    plan, (x, y, x + 0.6, y + 1.3), chairs=pieces.opposite(front), clear_m=0.3
+                )
 
 
 def _furnish_staff(plan: Plan, room: Room) -> None:
