@@ -5,12 +5,13 @@ from collections import Counter
 from functools import cache
 from pathlib import Path
 
+import matplotlib.image
 import pytest
 import shapely
 import yaml
 
 from benchmarks import catalogue
-from benchmarks.catalogue import buildings, phenomena, survey_settings
+from benchmarks.catalogue import buildings, phenomena, picture, survey_settings
 from helpers.default_settings import SCHEMA
 from scanplan.lab.buildings import building, building_route, drawing_file, drawn_floor
 from scanplan.lab.buildings.details import leaves
@@ -119,6 +120,30 @@ def test_half_of_the_named_rooms_at_least_can_be_driven_into(kind, seed):
     # bathrooms of hotels and wards are shut as a rule
     rooms = [room for room in rooms if not room["name"].startswith("bath")]
     assert sum(room["visited"] for room in rooms) >= len(rooms) / 2
+
+
+def test_sizes_are_those_of_buildings():
+    widths, lintels, walls = {"hinged": [], "double": [], "sliding": []}, [], []
+    for kind, seed in BUILDINGS:
+        floor = floor_of(kind, seed)
+        doors = [o for o in floor.openings if o.leaf]
+        for opening in doors if kind != "hall" else []:
+            widths[opening.leaf.type].append(opening.line_m.length)
+            lintels.append(opening.lintel_m)
+        walls += [w.thickness_m for w in floor.walls if not w.is_glass]
+    assert min(widths["hinged"]) > 0.64 and max(widths["hinged"]) < 1.3
+    assert min(widths["double"]) > 1.0 and max(widths["double"]) < 1.9
+    assert min(widths["sliding"]) > 0.85 and max(widths["sliding"]) < 1.7
+    assert min(lintels) >= 1.9 and max(lintels) <= 2.4
+    assert min(walls) == 0.05 and 0.7 <= max(walls) <= 0.85
+
+
+def test_a_picture_shows_a_building(tmp_path):
+    picture.draw_picture(text_of("dwelling", 101), tmp_path / "dwelling.png")
+    pixels = matplotlib.image.imread(tmp_path / "dwelling.png")
+    is_red = (pixels[..., 0] > 0.9) & (pixels[..., 1:3].max(axis=-1) < 0.2)
+    # leaves are red
+    assert pixels.shape[:2] == (720, 960) and is_red.sum() > 100
 
 
 def test_the_same_seed_draws_the_same_and_another_another():

@@ -3,11 +3,13 @@
 import json
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon as Patch
 from shapely import LineString
+
+from . import buildings, drives
 
 COLOURS = {
     "furniture": "#d9b382",
@@ -23,9 +25,18 @@ COLOURS = {
 _DEEP = ("ceiling", "floor", "void", "platform")
 
 
+def draw_all(folder: Path) -> None:
+    """Write a picture of every building of the catalogue as FOLDER/KIND_SEED.png."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for kind, seed in sorted({(drive.kind, drive.seed) for drive in drives.list_drives()}):
+        text = buildings.draw_building(kind, seed).text()
+        draw_picture(text, folder / f"{kind}_{seed}.png")
+
+
 def draw_picture(text: str, path: Path, *, way_m: np.ndarray | None = None) -> None:
     """Write a picture of a drawing in GeoJSON as PNG; `way_m` (n, 2) is a way through it."""
-    figure, axes = plt.subplots(figsize=(12, 9))
+    figure = Figure(figsize=(12, 9))
+    axes = figure.subplots()
     features = json.loads(text)["features"]
     walls = [f for f in features if f["properties"]["kind"] == "wall"]
     for feature in features:
@@ -38,7 +49,6 @@ def draw_picture(text: str, path: Path, *, way_m: np.ndarray | None = None) -> N
     axes.set_aspect("equal")
     figure.tight_layout()
     figure.savefig(path, dpi=80)
-    plt.close(figure)
 
 
 def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
