@@ -10,6 +10,7 @@ from . import furnish
 from .plan import Box, Plan, Room, Wall, Xy, as_place, rectangle, side_of
 
 _APART_M = 0.05  # between two openings at least
+_ACROSS = 0.4  # ASSUME so many sides have a house across within sight, others trees and sky
 
 
 @dataclass(frozen=True)
@@ -114,12 +115,14 @@ def glass_wall(
 def surround(
     plan: Plan, box: Box, *, storey_m: float = 0.15, sides: str = "snwe", far_m: float = 9.0
 ) -> None:
-    """Draw the ground about a building and the fronts of what stands across."""
+    """Draw the ground about a building, and the fronts of what stands across some of its sides."""
     x0, y0, x1, y1 = box
     reach_m = far_m + 3
     around = rectangle((x0 - reach_m, y0 - reach_m, x1 + reach_m, y1 + reach_m))
     plan.solid("ground", around, taken=False, z_m=-round(storey_m, 3))
     for side in sides:
+        if plan.rng.random() > _ACROSS:
+            continue
         off_m = far_m * float(plan.rng.uniform(0.6, 1.0))
         wide = (x0 - off_m, y0 - off_m, x1 + off_m, y1 + off_m)
         ends = np.array(side_of(wide, side))
