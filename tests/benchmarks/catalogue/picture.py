@@ -1,6 +1,7 @@
 """A picture of a drawing, to look at: what stands where, and how doors hang."""
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -59,8 +60,9 @@ def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
         colour = "#8fd3ff" if values.get("material") == "glass" else "#999999" if low else "black"
         end_m = values.get("end_thickness_m", values["thickness_m"])
         thick_m = (values["thickness_m"] + end_m) / 2
-        shape = LineString(xy).buffer(thick_m / 2, cap_style="flat", join_style="mitre")
-        axes.add_patch(Patch(np.array(shape.exterior.coords), color=colour, zorder=3))
+        for run in pairwise(xy):
+            shape = LineString(run).buffer(thick_m / 2, cap_style="flat")
+            axes.add_patch(Patch(np.array(shape.exterior.coords), color=colour, zorder=3))
     elif kind == "opening":
         _draw_opening(axes, values, np.array(xy), walls)
     elif kind in COLOURS:
