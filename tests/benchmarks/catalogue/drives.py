@@ -23,6 +23,15 @@ HALVES = {
 }
 """Half to its kinds of buildings."""
 SEEDS = {"tuning": (101, 102, 103), "reporting": (201, 202, 203)}
+SUBSET = (
+    *("office_cellular_101_laser360", "office_glass_101_uneven32_tilted"),
+    *("hospital_101_rosette_hand", "old_house_101_vlp16_hand"),
+    *("museum_101_vlp16_upside_down", "hall_101_vlp16_odometry"),
+    *("dwelling_103_laser270_slam", "office_open_201_vlp16_rover"),
+    *("hotel_202_ouster64_trolley", "basement_201_vlp16_unconverged"),
+    *("library_201_laser270", "attic_203_laser180"),
+)
+"""Drives with each of the sensors, through buildings that have all there is."""
 _SPATIAL = tuple(survey_settings.SPATIAL)
 _PLANAR = tuple(survey_settings.PLANAR)
 
@@ -100,6 +109,3 @@ def _write(path: Path, text: str) -> None:
     """Write a file unless it holds that: what is older than its results is not made again."""
     if not path.exists() or path.read_text() != text:
         path.write_text(text)
-
-
-SUBSET: tuple[str, ...] = ()

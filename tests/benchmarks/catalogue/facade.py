@@ -7,9 +7,10 @@ import numpy as np
 from shapely import LineString
 
 from . import furnish
-from .plan import Box, Plan, Room, Wall, Xy, rectangle, side_of
+from .plan import Box, Plan, Room, Wall, Xy, as_place, rectangle, side_of
 
 _APART_M = 0.05  # between two openings at least
+_ACROSS = 0.4  # ASSUME so many sides have a house across within sight, others trees and sky
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ def windows(
     plan: Plan, room: Room, side: str, style: WindowStyle, *, margin_m: float = 0.35
 ) -> int:
     """Draw a row of windows in the outer wall along a side of a room; return how many."""
-    a, b = side_of(room.box, side)
+    a, _ = side_of(room.box, side)
     axis = int(side in "we")
     # the room's own faces: crossing walls may be thick
     low_m, high_m = room.inner[axis] + margin_m - 0.1, room.inner[2 + axis] - margin_m + 0.1
@@ -104,23 +105,24 @@ def glass_wall(
     posts = np.linspace(0, length_m, count + 1)
     for middle_m in posts[1:-1]:
         ends = [np.asarray(a) + (middle_m + side * post_m / 2) * way for side in (-1, 1)]
-        plan.wall(*[(float(x), float(y)) for x, y in ends], 0.1)
+        plan.wall(as_place(ends[0]), as_place(ends[1]), 0.1)
     panes = []
     for low_m, high_m in zip(posts[:-1] + post_m / 2, posts[1:] - post_m / 2, strict=True):
-        p, q = np.asarray(a) + low_m * way, np.asarray(a) + high_m * way
-        panes.append(((float(p[0]), float(p[1])), (float(q[0]), float(q[1]))))
+        panes.append((as_place(np.add(a, low_m * way)), as_place(np.add(a, high_m * way))))
     return panes
 
 
 def surround(
     plan: Plan, box: Box, *, storey_m: float = 0.15, sides: str = "snwe", far_m: float = 9.0
 ) -> None:
-    """Draw the ground about a building and the fronts of what stands across."""
+    """Draw the ground about a building, and the fronts of what stands across some of its sides."""
     x0, y0, x1, y1 = box
     reach_m = far_m + 3
     around = rectangle((x0 - reach_m, y0 - reach_m, x1 + reach_m, y1 + reach_m))
     plan.solid("ground", around, taken=False, z_m=-round(storey_m, 3))
     for side in sides:
+        if plan.rng.random() > _ACROSS:
+            continue
         off_m = far_m * float(plan.rng.uniform(0.6, 1.0))
         wide = (x0 - off_m, y0 - off_m, x1 + off_m, y1 + off_m)
         ends = np.array(side_of(wide, side))

@@ -1,9 +1,10 @@
 """Furniture: along walls where nothing is in the way, or as groups in the middle of rooms."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from shapely import LineString, Polygon
+from shapely import Polygon
 
 from .plan import Box, Plan, Room, Xy, rectangle
 
@@ -127,7 +128,7 @@ def row(
     at_m, end_m = span[0], min(span[1], inner[2 + axis] - inner[axis] - 0.02)
     count = 0
     while at_m + unit_m[0] <= end_m + 1e-9 and count < most:
-        options = {"at_m": at_m, "gap_m": gap_m, "front_m": front_m}
+        options: Any = {"at_m": at_m, "gap_m": gap_m, "front_m": front_m}
         done = along(plan, inner, side, unit_m, height_m, kind, **options)
         count += done is not None
         at_m += unit_m[0] + 0.005 if done else _STEP_M

@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def strip(
 def parts(start_m: float, *widths_m: float) -> list[tuple[float, float]]:
     """Return the spans of given widths one after the other."""
     edges = np.round(np.concatenate([[start_m], start_m + np.cumsum(widths_m)]), 4).tolist()
-    return list(zip(edges[:-1], edges[1:], strict=True))
+    return list(pairwise(edges))
 
 
 def border(a: Box, b: Box) -> tuple[Xy, Xy] | None:

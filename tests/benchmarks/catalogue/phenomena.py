@@ -42,7 +42,7 @@ def count_phenomena(document: dict[str, Any]) -> Counter[str]:
 def _count_walls(features: list, ceiling_m: float) -> Counter[str]:
     walls = [(values, xy) for values, xy in features if values["kind"] == "wall"]
     counts = Counter[str]()
-    for values, xy in walls:
+    for values, _ in walls:
         thick_m = values["thickness_m"]
         glass = values.get("material") == "glass"
         counts["glass walls"] += glass

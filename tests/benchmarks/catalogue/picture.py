@@ -1,13 +1,16 @@
 """A picture of a drawing, to look at: what stands where, and how doors hang."""
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon as Patch
 from shapely import LineString
+
+from . import buildings, drives
 
 COLOURS = {
     "furniture": "#d9b382",
@@ -23,9 +26,18 @@ COLOURS = {
 _DEEP = ("ceiling", "floor", "void", "platform")
 
 
+def draw_all(folder: Path) -> None:
+    """Write a picture of every building of the catalogue as FOLDER/KIND_SEED.png."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for kind, seed in sorted({(drive.kind, drive.seed) for drive in drives.list_drives()}):
+        text = buildings.draw_building(kind, seed).text()
+        draw_picture(text, folder / f"{kind}_{seed}.png")
+
+
 def draw_picture(text: str, path: Path, *, way_m: np.ndarray | None = None) -> None:
     """Write a picture of a drawing in GeoJSON as PNG; `way_m` (n, 2) is a way through it."""
-    figure, axes = plt.subplots(figsize=(12, 9))
+    figure = Figure(figsize=(12, 9))
+    axes = figure.subplots()
     features = json.loads(text)["features"]
     walls = [f for f in features if f["properties"]["kind"] == "wall"]
     for feature in features:
@@ -38,7 +50,6 @@ def draw_picture(text: str, path: Path, *, way_m: np.ndarray | None = None) -> N
     axes.set_aspect("equal")
     figure.tight_layout()
     figure.savefig(path, dpi=80)
-    plt.close(figure)
 
 
 def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
@@ -49,8 +60,9 @@ def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
         colour = "#8fd3ff" if values.get("material") == "glass" else "#999999" if low else "black"
         end_m = values.get("end_thickness_m", values["thickness_m"])
         thick_m = (values["thickness_m"] + end_m) / 2
-        shape = LineString(xy).buffer(thick_m / 2, cap_style="flat", join_style="mitre")
-        axes.add_patch(Patch(np.array(shape.exterior.coords), color=colour, zorder=3))
+        for run in pairwise(xy):
+            shape = LineString(run).buffer(thick_m / 2, cap_style="flat")
+            axes.add_patch(Patch(np.array(shape.exterior.coords), color=colour, zorder=3))
     elif kind == "opening":
         _draw_opening(axes, values, np.array(xy), walls)
     elif kind in COLOURS:
@@ -68,13 +80,13 @@ def _draw_feature(axes: Axes, feature: dict, walls: list[dict]) -> None:
         axes.add_patch(patch)
         if kind in (*_DEEP, "stairs", "beam"):
             middle = np.mean(xy[0][:-1], axis=0)
-            axes.text(*middle, kind, fontsize=6, color="#3355aa", ha="center")
+            axes.text(middle[0], middle[1], kind, fontsize=6, color="#3355aa", ha="center")
     elif kind == "mirror":
         axes.plot(*np.array(xy).T, color="magenta", lw=3, zorder=8)
     elif kind == "facade":
         axes.plot(*np.array(xy).T, color="#777777", lw=2)
     elif kind == "room":
-        axes.text(*xy, values["name"], fontsize=7, ha="center", zorder=10, color="navy")
+        axes.text(xy[0], xy[1], values["name"], fontsize=7, ha="center", zorder=10, color="navy")
 
 
 def _draw_opening(axes: Axes, values: dict, xy: np.ndarray, walls: list[dict]) -> None:

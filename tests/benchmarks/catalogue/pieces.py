@@ -1,5 +1,7 @@
 """Pieces of furniture that kinds of buildings share: beds, desks, kitchens, plants, sanitary."""
 
+from typing import Any
+
 from shapely import LineString
 from shapely.geometry.base import BaseGeometry
 
@@ -23,7 +25,7 @@ def anywhere(
     kind: str,
     *,
     sides: str = "",
-    **options: float,
+    **options: Any,
 ) -> Box | None:
     """Put a piece at the first side of a room that has room for it."""
     for side in sides or free_sides(plan):
@@ -72,7 +74,7 @@ def cupboards(
         axis = int(side in "we")
         length_m = room.inner[2 + axis] - room.inner[axis]
         begin_m = float(plan.rng.choice([0.02, max(0.02, length_m - 0.04 - most * 0.81)]))
-        options = {"most": most, "span": (begin_m, 1e9), "front_m": 0.7}
+        options: Any = {"most": most, "span": (begin_m, 1e9), "front_m": 0.7}
         count = furnish.row(plan, room, side, (0.8, 0.42), tall_m, "cupboard", **options)
         if count:
             return count
@@ -84,7 +86,7 @@ def kitchen(plan: Plan, room: Room, side: str, *, most: int = 5) -> int:
     inner = room.inner
     axis = int(side in "we")
     length_m = inner[2 + axis] - inner[axis]
-    options = {"front_m": 0.8}
+    options: Any = {"front_m": 0.8}
     tall = furnish.row(plan, room, side, (0.6, 0.6), 2.15, "kitchen", most=1, **options)
     at_m, count = 0.02, 0
     while at_m + 0.6 <= length_m - 0.02 and count < most:

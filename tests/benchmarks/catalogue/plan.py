@@ -8,6 +8,7 @@ by x, then by y, and so do openings in them: that is the direction that `hinge` 
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -100,8 +101,7 @@ class Plan:
         """Draw a wall of several runs; a `curved` one has vertices at most 0.3 m apart."""
         line = [_rounded((x, y)) for x, y in np.asarray(points, float)]
         self.add("wall", "LineString", line, thickness_m=thickness_m, **values)
-        runs = zip(line[:-1], line[1:], strict=True)
-        self.walls += [Wall(LineString(run), thickness_m) for run in runs]
+        self.walls += [Wall(LineString(run), thickness_m) for run in pairwise(line)]
 
     def shell(self, box: Box, thickness_m: float, **values: Any) -> None:
         """Draw the four outer walls of a rectangle."""
@@ -196,6 +196,12 @@ def rectangle(box: Box) -> Polygon:
     """Return a box as a polygon that starts at its lower left corner and goes anticlockwise."""
     x0, y0, x1, y1 = box
     return Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
+
+
+def as_place(xy: ArrayLike) -> Xy:
+    """Return an array of two numbers as a place."""
+    x, y = np.asarray(xy, float)
+    return float(x), float(y)
 
 
 def _rounded(xy: Sequence[float]) -> Xy:

@@ -45,7 +45,7 @@ def draw(plan: Plan) -> None:
         for side in common.outer_sides(room.box, extent):
             if side in "sn":
                 facade.windows(plan, room, side, light)
-    facade.surround(plan, extent, storey_m=0.2, far_m=6.0)
+    _light_wells(plan, extent)
     common.stairs(plan, rooms[1], "n", width_m=1.0, rise_m=2.5)
     _beams(plan, rooms[3 + len(cells) :])
     for room in rooms[3 + len(cells) :]:
@@ -82,6 +82,13 @@ def _doors(
     common.doors_to_hall(plan, south, hall, steel, may_close=0.35, margin_m=0.25)
     common.doors_to_hall(plan, cells, hall, boards, may_close=0.75, outwards=False, margin_m=0.08)
     common.exit_door(plan, hall, "e", steel, recess_m=0.1, margin_m=0.2)
+
+
+def _light_wells(plan: Plan, extent: Box) -> None:
+    """Draw the walls of the light wells before the windows."""
+    for y in (extent[1] - 0.9, extent[3] + 0.9):
+        line = [[extent[0], y], [extent[2], y]]
+        plan.add("facade", "LineString", line, height_m=plan.height_m)
 
 
 def _beams(plan: Plan, rooms: list[Room]) -> None:

@@ -79,9 +79,9 @@ def _columns(plan: Plan, extent: Box, block: Box) -> None:
     for x in np.arange(_BAY_M, x1 - 0.1, _BAY_M):
         for y in (0.1, y1 - 0.1 - size_m):
             box = (float(x) - size_m / 2, y, float(x) + size_m / 2, y + size_m)
-            if y < 1 or not block[0] < x < block[2] + 1.3:
-                if plan.is_free(rectangle(box)):
-                    plan.solid("column", rectangle(box), type="pilaster")
+            is_outside = y < 1 or not block[0] < x < block[2] + 1.3
+            if is_outside and plan.is_free(rectangle(box)):
+                plan.solid("column", rectangle(box), type="pilaster")
         if x > block[2]:
             shape = common.column_shape(float(x), y1 / 2, size_m, is_round=False)
             plan.solid("column", shape, type="column")

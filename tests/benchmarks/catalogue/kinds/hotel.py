@@ -103,7 +103,7 @@ def _doors(plan: Plan, cell: Box, bath: Box, style: doors.DoorStyle, *, driven: 
     doors.door(plan, *line, style, into=into, driven=driven, margin_m=0.14, hinge=away)
     x = bath[0] if is_right else bath[2]
     narrow = doors.DoorStyle(0.75, 2.0, frame_m=0.03)
-    options = {"into": layout.middle(bath), "driven": bool(plan.rng.random() < 0.2)}
+    options = {"into": layout.middle(bath), "driven": bool(plan.rng.random() < 0.3)}
     at_m = 0.2 if cell[1] == 0 else bath[3] - bath[1] - 0.95
     doors.door(plan, (x, bath[1]), (x, bath[3]), narrow, at_m=at_m, **options)
 
@@ -141,7 +141,7 @@ def _furnish_lobby(plan: Plan, lobby: Room, front: np.ndarray) -> None:
     line = ((lift[0], lift[1]), (lift[0] + 2.0, lift[1]))
     options = {"leaf": "sliding", "driven": False, "margin_m": 0.4, "recess_m": 0.1}
     doors.door(plan, *line, steel, **options)  # type: ignore[arg-type]
-    plan.taken.append(rectangle((lift[0], lift[1], x1, y1)))
+    plan.taken.append(rectangle((lift[0] - 0.12, lift[1] - 0.12, x1, y1)))
     for y in (y0 + 2.3, y1 - 2.6):
         shape = common.column_shape(x0 + 1.9, y, 0.45, is_round=True)
         if plan.is_free(shape, 0.3):

@@ -1,5 +1,7 @@
 """A library: stacks, an open stairwell with a parapet, a bowed reading bay, rooms of glass."""
 
+from typing import Any
+
 import numpy as np
 
 from .. import common, doors, facade, furnish, layout, pieces
@@ -83,8 +85,8 @@ def _group_room(plan: Plan, box: Box, number: int) -> Room:
     glass = doors.DoorStyle(0.9, 2.1, frame_m=0.03, leaf_m=0.02, glass=True)
     driven = number == 0 or bool(plan.rng.random() < 0.5)
     for k in plan.rng.permutation(len(panes)):
-        options = {"into": layout.middle(box), "driven": driven, "margin_m": 0.03}
-        if doors.door(plan, *panes[k], glass, **options):
+        options: Any = {"into": layout.middle(box), "driven": driven, "margin_m": 0.03}
+        if doors.door(plan, *panes[int(k)], glass, **options):
             break
     low_m = float(plan.rng.choice([2.6, 2.75]))
     plan.solid("ceiling", rectangle(room.inner), taken=False, height_m=low_m)
@@ -159,7 +161,7 @@ def _reading_places(plan: Plan, reading: Room, bay: tuple[float, float]) -> None
     for _ in range(2):
         pieces.plant(plan, reading)
     for at_m in (1.0, 2.0, 3.0):
-        options = {"at_m": at_m, "gap_m": 1.2, "front_m": 1.0}
+        options: Any = {"at_m": at_m, "gap_m": 1.2, "front_m": 1.0}
         if furnish.along(plan, reading, "w", (2.2, 0.8), 1.05, "counter", **options):
             break
 

@@ -1,11 +1,13 @@
 """A museum: a rotunda, rooms with oblique walls about it, and a hall with a gallery's void."""
 
+from typing import Any
+
 import numpy as np
 import shapely
 from shapely import LineString, Polygon
 
 from .. import common, doors, facade, furnish, niche
-from ..plan import Plan, rectangle
+from ..plan import Plan, as_place, rectangle
 
 
 def draw(plan: Plan) -> None:
@@ -63,11 +65,10 @@ def _rotunda(
     for k, turn in enumerate(sorted(turns)):
         way = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
         ray = LineString([np.add(middle, radius_m * way), np.add(middle, 40 * way)])
-        a, b = ray.intersection(box).coords[:2]
+        a, b = (as_place(xy) for xy in sorted(ray.intersection(box).coords))
         plan.wall(a, b, float(plan.rng.choice([0.15, 0.2])))
-        ends = sorted([a, b])
-        options = {"leaf": None, "width_m": 1.25, "lintel_m": 2.5, "margin_m": 0.45}
-        doors.door(plan, *ends, doors.DoorStyle(), **options)
+        options: Any = {"leaf": None, "width_m": 1.25, "lintel_m": 2.5, "margin_m": 0.45}
+        doors.door(plan, a, b, doors.DoorStyle(), **options)
         nxt = (sorted(turns)[(k + 1) % 3] - turn) % 360
         at = np.radians(turn + nxt / 2) + np.array([-0.8, 0.8]) / radius_m
         p, q = np.asarray(middle) + radius_m * np.column_stack([np.cos(at), np.sin(at)])

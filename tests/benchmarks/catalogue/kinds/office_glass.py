@@ -1,9 +1,11 @@
 """An office of glass: curtain walls outside, panes between rooms, a floor that shines."""
 
+from typing import Any
+
 import numpy as np
 
 from .. import common, doors, facade, furnish, layout, pieces
-from ..plan import Box, Plan, Room, rectangle
+from ..plan import Box, Plan, Room, Xy, rectangle
 
 
 def draw(plan: Plan) -> None:
@@ -39,7 +41,7 @@ def draw(plan: Plan) -> None:
     for cell, options in zip(cells, panes, strict=True):
         driven = bool(rng.random() < 0.7)
         for pane in options:
-            values = {"into": layout.middle(cell), "driven": driven, "margin_m": 0.04}
+            values: Any = {"into": layout.middle(cell), "driven": driven, "margin_m": 0.04}
             if doors.door(plan, *pane, style, **values):
                 break
     plain = doors.draw_style(rng)
@@ -70,7 +72,7 @@ def _shell(plan: Plan, extent: Box, core: Box) -> None:
     plan.wall((x0, y1), (core[2], y1), 0.25)
 
 
-def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list]:
+def _fronts(plan: Plan, cells: list[Box], hall: Box) -> list[list[tuple[Xy, Xy]]]:
     """Draw the glass fronts of rooms; return the panes of each, for its door."""
     fronts = []
     for cell in cells:

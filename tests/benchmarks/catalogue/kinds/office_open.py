@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+
 from .. import common, doors, facade, furnish, layout, pieces
 from ..plan import Box, Plan, Room, rectangle
 
