@@ -34,7 +34,7 @@ def draw(plan: Plan) -> None:
     if line:
         into = layout.middle(living)
         doors.door(plan, *line, style, into=into, open_deg=90.0, margin_m=0.15)
-    for cell in common.doors_to_hall(plan, [*south, *north], hall, style, may_close=0.4):
+    for cell in common.doors_to_hall(plan, [*south, *north], hall, style, may_close=0.2):
         # the stairs are before it: from the room beside, away from the slope
         line = layout.border(north[-2], cell)
         if line:
