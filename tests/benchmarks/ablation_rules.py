@@ -82,12 +82,6 @@ _ROOMS: dict[str, Rule] = {
         f"{_BOUNDS}:_solid_m",
         "geometry.narrow_places:_choose_gaps",
     ),
-    "hidden floor": make_rule(
-        f"{_BOUNDS}:_find_hidden_floor",
-        answer(None),
-        f"{_BOUNDS}:_find_hidden_floor",
-        "geometry.narrow_places:_is_narrowed",
-    ),
     "partings on lines of walls": make_rule(f"{_BOUNDS}:_snap", give_back(0)),
     "doors by their leaves": make_rule(f"{_BOUNDS}:_choose_ways", find_none),
     "shadows of chairs": make_rule(
