@@ -3,6 +3,7 @@
 import csv
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -124,13 +125,16 @@ def test_what_is_kept_is_read_again_and_other_code_makes_it_anew(tmp_path, monke
         return {"tables": str(len(rule.switches)), "scores": {}}
 
     monkeypatch.setattr(ablation, "_measure", measure)
+    monkeypatch.setattr(ablation.tables, "ScanStore", lambda _: SimpleNamespace(planar=True))
     monkeypatch.setattr(ablation, "RULES", OFF)
     monkeypatch.setattr(ablation, "BASES", BASES)
     settings = {"plan": {"method": "wall_length"}}
-    first = ablation.ablate(results, tmp_path / "kept", settings)
-    assert len(made) == 4 and ablation.ablate(results, tmp_path / "kept", settings) == first
-    assert len(made) == 4
+    first = ablation.ablate(results, tmp_path / "kept", list(OFF), settings)
+    assert (
+        len(made) == 3 and ablation.ablate(results, tmp_path / "kept", list(OFF), settings) == first
+    )
+    assert len(made) == 3
     monkeypatch.setattr(ablation, "code_digest", lambda: "other")
-    ablation.ablate(results, tmp_path / "kept", settings)
-    assert len(made) == 8
+    ablation.ablate(results, tmp_path / "kept", list(OFF), settings)
+    assert len(made) == 6
     assert isinstance(made[0], Rule)
