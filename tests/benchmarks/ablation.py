@@ -8,6 +8,7 @@ under a name that says code, settings and survey, so that a run that was stopped
 import contextlib
 import hashlib
 import json
+import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
@@ -40,29 +41,35 @@ _OF_SURVEY = ("registration.parquet", "plan/segments.parquet", "poses.parquet")
 
 
 def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
-    """Print what each rule changes on drives, and write it to `ablation.csv` and `ablation.md`.
+    """Print what each rule changes on drives, and write it below `ablation` as CSV and Markdown.
 
     Parameters
     ----------
     folder : Path
         As a bench made it: with results of the workflow, or below `results` or `code/results`.
     names : sequence of str
-        Datasets; all that are finished if empty.
+        Datasets, and rules: all that are finished, and all that there are, where none is named.
     settings : dict
         Default settings.
     """
     results = next((folder / place for place in _PLACES if (folder / place).is_dir()), folder)
     finished = sorted(path.parents[1] for path in results.glob("*/plan/segments.parquet"))
-    drives = [path for path in finished if not names or path.name in names]
+    rules = [name for name in RULES if name in names] or list(RULES)
+    wanted = set(names) - set(rules)
+    drives = [path for path in finished if not wanted or path.name in wanted]
+    if unknown := wanted - {path.name for path in finished}:
+        sys.exit(f"ablate: neither a rule nor finished in {results}: {', '.join(sorted(unknown))}")
     kept = folder / "ablation"
-    jobs = [(path, kept / path.name, settings) for path in drives]
+    jobs = [(path, kept / path.name, rules, settings) for path in drives]
     with workers.open_pool(min(_PROCESSES, len(jobs) or 1)) as run:
         found = dict(zip([path.name for path in drives], run(ablate, jobs), strict=True))
     for kind, of_kind in _by_kind(drives, found).items():
-        ablation_table.report(kind, of_kind, RULES, BASES, kept)
+        ablation_table.report(kind, of_kind, {name: RULES[name] for name in rules}, BASES, kept)
 
 
-def ablate(results: Path, kept: Path, settings: Settings) -> dict[str, dict[str, Any]]:
+def ablate(
+    results: Path, kept: Path, names: Sequence[str], settings: Settings
+) -> dict[str, dict[str, Any]]:
     """Return, by the name of each rule, what the plan of a survey is worth without it.
 
     Parameters
@@ -71,6 +78,8 @@ def ablate(results: Path, kept: Path, settings: Settings) -> dict[str, dict[str,
         What the workflow made of the survey.
     kept : Path
         Folder for what was found.
+    names : sequence of str
+        Of rules.
     settings : dict
         Default settings.
 
@@ -82,15 +91,22 @@ def ablate(results: Path, kept: Path, settings: Settings) -> dict[str, dict[str,
     kept.mkdir(parents=True, exist_ok=True)
     own = _own_settings(results, settings)
     survey = _digest([json.dumps(own, sort_keys=True), *_survey_parts(results, own)])
-    rules = {BASE: Rule({}, ()), _ANEW: Rule({}, (), extracts=True), **RULES}
+    planar = tables.ScanStore(results / "scans.parquet").planar
+    chosen = {name: RULES[name] for name in names}
+    rules = {BASE: Rule({}, ()), **chosen}
+    if any(rule.extracts for rule in chosen.values()):
+        rules = {_ANEW: Rule({}, (), extracts=True), **rules}
     found: dict[str, dict[str, Any]] = {}
     for name, rule in rules.items():
+        if rule.planar not in (None, planar):
+            found[name] = found[BASES[name]]
+            continue
         file = kept / f"{name.replace(' ', '_').replace(',', '')}.json"
         digest = _digest([code_digest(), survey, name])
         found[name] = _read_kept(file, digest) or _measure(results, own, rule, found)
         file.write_text(json.dumps({"code": digest, **found[name]}, sort_keys=True))
-    n_changed = sum(found[name]["tables"] != found[BASES[name]]["tables"] for name in RULES)
-    print(f"ablate, {results.name}: {n_changed} of {len(RULES)} rules change the plan", flush=True)
+    n_changed = sum(found[name]["tables"] != found[BASES[name]]["tables"] for name in names)
+    print(f"ablate, {results.name}: {n_changed} of {len(names)} rules change the plan", flush=True)
     return found
 
 
@@ -98,7 +114,8 @@ def _measure(
     results: Path, settings: Settings, rule: Rule, found: dict[str, dict[str, Any]]
 ) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
-        plan = Path(folder)
+        plan = Path(folder) / "plan"
+        plan.mkdir()
         try:
             _make_plan(results, settings, rule, plan)
         except Exception as error:

@@ -1,5 +1,7 @@
 """The rules of the plan that can be switched off one at a time, and the code of each."""
 
+from dataclasses import replace
+
 import shapely
 from ablation_switches import (
     Rule,
@@ -81,12 +83,7 @@ _ROOMS: dict[str, Rule] = {
         f"{_BOUNDS}:_find_free_line",
         f"{_BOUNDS}:_solid_m",
         "geometry.narrow_places:_choose_gaps",
-    ),
-    "hidden floor": make_rule(
-        f"{_BOUNDS}:_find_hidden_floor",
-        answer(None),
-        f"{_BOUNDS}:_find_hidden_floor",
-        "geometry.narrow_places:_is_narrowed",
+        planar=True,
     ),
     "partings on lines of walls": make_rule(f"{_BOUNDS}:_snap", give_back(0)),
     "doors by their leaves": make_rule(f"{_BOUNDS}:_choose_ways", find_none),
@@ -95,9 +92,12 @@ _ROOMS: dict[str, Rule] = {
         give_back(0),
         "rays.free_space:close_shadows",
         f"{_OUTLINES}:_without_shadows",
+        planar=True,
     ),
-    "driven ground": make_rule("rays.free_space:driven_ground", find_none),
-    "floor that other scans saw": make_rule("rays.free_space:find_seen_floor", answer(_NO_GROUND)),
+    "driven ground": make_rule("rays.free_space:driven_ground", find_none, planar=True),
+    "floor that other scans saw": make_rule(
+        "rays.free_space:find_seen_floor", answer(_NO_GROUND), planar=True
+    ),
     "cells": make_rule(
         f"{_OUTLINES}:_fill_cells",
         draw_as_seen,
@@ -106,10 +106,10 @@ _ROOMS: dict[str, Rule] = {
         f"{_OUTLINES}:_bounding_lines",
     ),
     "bare parts": make_rule(
-        "geometry.bare_parts:cut_bare_parts", give_alone(0), "geometry.bare_parts"
+        "geometry.bare_parts:cut_bare_parts", give_alone(0), "geometry.bare_parts", planar=True
     ),
     "unseen floor": make_rule(
-        "plan.planning:leave_out_unseen", give_back(0), "plan.rooms.unseen_floor"
+        "plan.planning:leave_out_unseen", give_back(0), "plan.rooms.unseen_floor", planar=True
     ),
     "bare spans": make_rule(
         "plan.wall_ground:find_bare_spans",
@@ -118,7 +118,10 @@ _ROOMS: dict[str, Rule] = {
         "plan.wall_ground:_kind_beyond",
         "plan.opening_kinds:decide_bare_spans",
     ),
-    "kinds of bare spans": make_rule("plan.opening_kinds:decide_bare_spans", give_back(0)),
+    "kinds of bare spans": make_rule(
+        "plan.opening_kinds:decide_bare_spans", give_back(0), planar=False
+    ),
 }
-RULES: dict[str, Rule] = {**FACES, **WALLS, **_FURNITURE, **_ROOMS}
+_IN_THE_PLANE = {name: replace(rule, planar=True) for name, rule in _FURNITURE.items()}
+RULES: dict[str, Rule] = {**FACES, **WALLS, **_IN_THE_PLANE, **_ROOMS}
 """All rules, in the order that a plan is made in."""

@@ -39,16 +39,21 @@ class Rule:
         What would go with the rule: modules below scanplan, or functions and classes in them.
     extracts : bool
         Whether it is asked of single scans, so that their walls are extracted anew.
+    planar : bool, optional
+        Whether it is asked of planar scans alone, or of those in space alone.
     """
 
     switches: Mapping[str, Switch]
     code: tuple[str, ...]
     extracts: bool = False
+    planar: bool | None = None
 
 
-def make_rule(place: str, switch: Switch, *code: str, extracts: bool = False) -> Rule:
+def make_rule(
+    place: str, switch: Switch, *code: str, extracts: bool = False, planar: bool | None = None
+) -> Rule:
     """Return a rule of one function, whose code that is unless other code is named."""
-    return Rule({place: switch}, code or (place,), extracts)
+    return Rule({place: switch}, code or (place,), extracts, planar)
 
 
 @contextmanager

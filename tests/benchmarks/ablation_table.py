@@ -101,7 +101,11 @@ def row_of(name: str, rule: Rule, base: str, found: Found) -> dict[str, Any]:
 def row_of_base(found: Found) -> dict[str, float]:
     """Return the mean of each measure with all rules."""
     scores = [of["nothing"]["scores"] for of in found.values()]
-    known = {m: [of[m] for of in scores if math.isfinite(of.get(m, math.nan))] for m in scores[0]}
+    # what was kept comes back in another order than what was measured now
+    known = {
+        measure: [of[measure] for of in scores if math.isfinite(of.get(measure, math.nan))]
+        for measure in (*HEADLINES, *COUNTS)
+    }
     return {measure: float(np.mean(values)) for measure, values in known.items() if values}
 
 

@@ -35,6 +35,7 @@ FACES: dict[str, Rule] = {
         stand_nowhere,
         "extraction.face_arrangement:stand_in_front",
         extracts=True,
+        planar=False,
     ),
     "walls by corners in single scans": make_rule(
         "extraction.furniture:_are_walls_by_corners",
@@ -46,6 +47,7 @@ FACES: dict[str, Rule] = {
         "extraction.face_arrangement:find_collinear_faces",
         "extraction.face_evidence:gap_leads_on",
         extracts=True,
+        planar=False,
     ),
     "range bias": make_rule(
         "rays.range_bias:estimate_range_bias", answer(np.zeros(181)), "rays.range_bias"
@@ -56,7 +58,10 @@ FACES: dict[str, Rule] = {
         "plan.faces.intervals:_leads_into_glass", answer(value=False)
     ),
     "looking beyond ends": make_rule(
-        "plan.faces.intervals:look_beyond", give_back(0), "rays.face_observation:look_beyond"
+        "plan.faces.intervals:look_beyond",
+        give_back(0),
+        "rays.face_observation:look_beyond",
+        planar=True,
     ),
     "columns joined": make_rule("plan.faces.intervals:_join_columns", put(2, 0.0)),
     "overlooked columns": make_rule("rays.face_raster:FaceRaster.is_overlooked", mark_no_column),
@@ -79,7 +84,7 @@ FACES: dict[str, Rule] = {
     "scans that show a face": make_rule(
         "plan.faces.tracing:_FaceSelection._is_shown", answer(value=True)
     ),
-    "moved": make_rule("plan.faces.tracing:_has_moved", answer(value=False)),
+    "moved": make_rule("plan.faces.tracing:_has_moved", answer(value=False), planar=True),
     "stubs": make_rule("plan.faces.tracing:_without_stubs", give_back(0)),
     "doubles": make_rule("plan.faces.candidates:remove_doubles", ask_with(distance_m=0.0)),
     "ghosts": make_rule("plan.faces.candidates:remove_doubles", ask_with(ghost_share=0.0)),
@@ -111,10 +116,13 @@ WALLS: dict[str, Rule] = {
         "plan.planning:greatest_thickness_m",
         answer(math.inf),
         "plan.plan_wall:greatest_thickness_m",
+        planar=True,
     ),
     "cut at what was not seen": make_rule("plan.walls:_Assembly.cut", keep_whole),
     "openings between things": make_rule("plan.walls:_openings_between_things", find_none),
-    "on over openings": make_rule("plan.walls:_Assembly.extend_over_openings", give_back(1)),
+    "on over openings": make_rule(
+        "plan.walls:_Assembly.extend_over_openings", give_back(1), planar=False
+    ),
     "on through hidden": make_rule("plan.walls:_Assembly.extend_through_hidden", give_back(1)),
     "junctions": make_rule("plan.walls:_Assembly.meet_walls", give_back(1)),
     "openings trimmed": make_rule(
@@ -138,7 +146,7 @@ WALLS: dict[str, Rule] = {
         "plan.wall_faces:_without_open",
     ),
     "inferred but where open": make_rule("plan.wall_faces:_without_open", give_alone(2)),
-    "windows": make_rule("plan.windows:add_windows", give_back(0), "plan.windows"),
+    "windows": make_rule("plan.windows:add_windows", give_back(0), "plan.windows", planar=False),
     "kinds by likelihood": make_rule(
         "plan.opening_kinds:decide_kinds",
         name_by_sill,
@@ -147,20 +155,25 @@ WALLS: dict[str, Rule] = {
         "plan.opening_kinds:weigh_kinds",
     ),
     "low surfaces": make_rule(
-        "plan.half_height:drop_low_surfaces",
-        keep_low_surfaces,
+        "plan.half_height:drop_low_surfaces", keep_low_surfaces, planar=False
     ),
     "tops of walls": make_rule(
-        "plan.half_height:estimate_wall_top_m", answer(math.nan), "plan.half_height"
+        "plan.half_height:estimate_wall_top_m", answer(math.nan), "plan.half_height", planar=False
     ),
     "pillars": make_rule(
-        "plan.planning:cut_off_pillars", give_each(lambda wall: [wall]), "plan.furniture.pillars"
+        "plan.planning:cut_off_pillars",
+        give_each(lambda wall: [wall]),
+        "plan.furniture.pillars",
+        planar=False,
     ),
     "sides of columns": make_rule(
         "plan.planning:find_column_faces",
         give_each(lambda _: False),
         "plan.furniture.columns:find_column_faces",
+        planar=False,
     ),
-    "columns": make_rule("plan.planning:tell_columns", give_back(0), "plan.furniture.columns"),
+    "columns": make_rule(
+        "plan.planning:tell_columns", give_back(0), "plan.furniture.columns", planar=False
+    ),
     "people": make_rule("plan.furniture.pieces:_find_passers", keep_all_returns),
 }

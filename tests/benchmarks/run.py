@@ -6,7 +6,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py table FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
-       run.py ablate FOLDER [SURVEY ...]
+       run.py ablate FOLDER [SURVEY | RULE ...]
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
@@ -31,6 +31,7 @@ fell.
 
 `ablate` makes the plans of surveys that a bench has finished in FOLDER again, without one rule of
 the plan at a time, and prints what each rule is worth: two drives at once, a few seconds a rule.
+Surveys and rules may be named, as in ablate FOLDER intel "narrow places".
 
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a

@@ -3,6 +3,7 @@
 import csv
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -107,6 +108,13 @@ def test_the_table_is_printed_and_written_and_names_what_changes_nothing(tmp_pat
     assert float(rows[0]["door_recall"]) == pytest.approx(-0.1)
 
 
+def test_measures_stand_in_one_order_whichever_they_come_in():
+    scores = {"room_iou": 0.9, "door_recall": 0.5}
+    orders = (scores, dict(sorted(scores.items())))
+    one, other = ({"drive": {ablation.BASE: {"scores": of}}} for of in orders)
+    assert list(ablation_table.row_of_base(one)) == list(ablation_table.row_of_base(other))
+
+
 def test_what_is_kept_is_read_again_and_other_code_makes_it_anew(tmp_path, monkeypatch):
     results = tmp_path / "results/drive"
     for name in ("plan", "selection"):
@@ -124,13 +132,16 @@ def test_what_is_kept_is_read_again_and_other_code_makes_it_anew(tmp_path, monke
         return {"tables": str(len(rule.switches)), "scores": {}}
 
     monkeypatch.setattr(ablation, "_measure", measure)
+    monkeypatch.setattr(ablation.tables, "ScanStore", lambda _: SimpleNamespace(planar=True))
     monkeypatch.setattr(ablation, "RULES", OFF)
     monkeypatch.setattr(ablation, "BASES", BASES)
     settings = {"plan": {"method": "wall_length"}}
-    first = ablation.ablate(results, tmp_path / "kept", settings)
-    assert len(made) == 4 and ablation.ablate(results, tmp_path / "kept", settings) == first
-    assert len(made) == 4
+    first = ablation.ablate(results, tmp_path / "kept", list(OFF), settings)
+    assert (
+        len(made) == 3 and ablation.ablate(results, tmp_path / "kept", list(OFF), settings) == first
+    )
+    assert len(made) == 3
     monkeypatch.setattr(ablation, "code_digest", lambda: "other")
-    ablation.ablate(results, tmp_path / "kept", settings)
-    assert len(made) == 8
+    ablation.ablate(results, tmp_path / "kept", list(OFF), settings)
+    assert len(made) == 6
     assert isinstance(made[0], Rule)

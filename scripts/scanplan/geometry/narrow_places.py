@@ -31,7 +31,6 @@ def find_narrow_places(
     visited_m: FloatArray,
     gaps_m: Sequence[FloatArray] = (),
     walls: BaseGeometry | None = None,
-    hidden: BaseGeometry | None = None,
     *,
     max_width_m: float,
     min_area_m2: float,
@@ -52,8 +51,6 @@ def find_narrow_places(
         Lines across ground that may part it however wide they are, if it is wider on both sides.
     walls : shapely geometry, optional
         Where walls stand that are no furniture.
-    hidden : shapely geometry, optional
-        Ground behind furniture: what is narrow for that alone is none.
     max_width_m : float, > 0
         Of other lines.
     min_area_m2 : float, >= 0
@@ -91,8 +88,7 @@ def find_narrow_places(
         if line is None or not 0 < _length_m(line) <= max_width_m:
             continue
         is_passed = visited.issuperset(pair) and way.intersects(LineString(line))
-        is_narrow = not is_passed or _widens_on_both_sides(near, line)
-        if is_narrow and not _is_narrowed(near, line, hidden):
+        if not is_passed or _widens_on_both_sides(near, line):
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
     visits = np.asarray(shapely.points(visited_m))
@@ -290,16 +286,6 @@ def _diagonal_m(ground: BaseGeometry) -> float:
 
 def _length_m(line: FloatArray) -> float:
     return math.hypot(*(line[1] - line[0]))
-
-
-def _is_narrowed(ground: BaseGeometry, line: FloatArray, hidden: BaseGeometry | None) -> bool:
-    """Return whether a line parts ground for what hides a part of it alone."""
-    if hidden is None or LineString(line).distance(hidden) > SHORTEST_M:
-        return False
-    whole = shapely.union_all([ground, shapely.clip_by_rect(hidden, *ground.bounds)])
-    middle_m = line.mean(axis=0)
-    across = _line_across(whole, middle_m, (line[1] - line[0]) / _length_m(line))
-    return across is not None and not _widens_on_both_sides(whole, across)
 
 
 def _widens_on_both_sides(ground: BaseGeometry, line: FloatArray) -> bool:

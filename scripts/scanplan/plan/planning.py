@@ -426,8 +426,6 @@ class _Survey:
             max_width_m=self.settings.openings.max_door_m,
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
-            max_thickness_m=self.settings.pairs.max_thickness_m,
-            max_depth_m=self.settings.furniture.furniture_depth_m,
             planar=self.rays.planar,
             ways_m=[leaf.way_m for leaf in surfaces.leaves],
             hidden=free_space.difference_on_grid(floor, self.seen) if self.rays.planar else None,

@@ -12,9 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import intersections, narrow_places
 from scanplan.geometry.lines import Line
-from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
-from scanplan.plan.furniture.recesses import find_holes
 from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
@@ -90,8 +88,6 @@ def find_partings(
     max_width_m: float,
     min_area_m2: float,
     unpaired_m: float,
-    max_thickness_m: float,
-    max_depth_m: float,
     planar: bool = False,
     ways_m: Sequence[FloatArray] = (),
     hidden: BaseGeometry | None = None,
@@ -101,7 +97,7 @@ def find_partings(
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
     In planar scans, which show no lintel and less of walls behind furniture, gaps in the line of a
-    wall part floor too (`_find_line_gaps`). What only furniture at a wall narrows parts nothing.
+    wall part floor too (`_find_line_gaps`).
 
     Parameters
     ----------
@@ -117,8 +113,6 @@ def find_partings(
         Of a room; less is not parted off.
     unpaired_m : float
         As in `find_glass_walls`.
-    max_thickness_m, max_depth_m : float
-        Of a wall, and of furniture from its front to its back.
     planar : bool
         Whether all scans lie in one plane.
     ways_m : sequence of (2, 2) float64
@@ -144,10 +138,9 @@ def find_partings(
     # shorter ones may be sides of what stands in a room
     is_long = [planar and wall.length_m > 2 * max_width_m for wall in bounds]
     walls = shapely.union_all(list(itertools.compress(strips, is_long)))
-    behind = _find_hidden_floor(free, solid, max_thickness_m, max_depth_m) if planar else None
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
-            *(part, track_m, gaps_m, walls, behind),
+            *(part, track_m, gaps_m, walls),
             max_width_m=max_width_m,
             min_area_m2=min_area_m2,
             cell_m=CELL_M,
@@ -156,29 +149,6 @@ def find_partings(
             kind = wall_ground.UNSEEN if is_hidden else GAP
             partings.append(_make_parting(_snap(ends_m, bounds), kind))
     return partings
-
-
-def _find_hidden_floor(
-    free: BaseGeometry, solid: BaseGeometry, max_thickness_m: float, max_depth_m: float
-) -> BaseGeometry:
-    """Return what furniture at walls hides of the floor.
-
-    It is no deeper than furniture, and longer along a wall than any wall across that is thick; and
-    on both sides of it floor goes on along the wall.
-    """
-    known = shapely.union_all([free, solid]).buffer(CELL_M, join_style="mitre")
-    along = solid.buffer(END_M + 2 * CELL_M)
-    hidden = []
-    for hole in find_holes(known):
-        _, length_m = rectangle_sides_m(hole.intersection(along))
-        if length_m <= max_thickness_m or hole.area > max_depth_m * length_m:
-            continue
-        around = hole.buffer(CORNER_M).intersection(along)
-        beside = shapely.union(around.intersection(free), around.intersection(hole))
-        # on one side alone as much as a corner, and not quite as much on both, at oblique ends
-        if rectangle_sides_m(beside)[1] >= length_m + 1.5 * CORNER_M:
-            hidden.append(hole.buffer(CELL_M, join_style="mitre"))
-    return free_space.difference_on_grid(free_space.union_on_grid(hidden), solid)
 
 
 def _find_line_gaps(
