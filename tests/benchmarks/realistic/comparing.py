@@ -33,10 +33,10 @@ def compare(before: Path, after: Path) -> None:
     changes = list(_find_changes(before, after))
     for healed, words in ((True, "healed"), (False, "new")):
         count = Counter((c.table, c.verdict) for c in changes if c.healed is healed)
-        size = Counter[tuple[str, str]]()
-        for change in changes:
-            if change.healed is healed:
-                size[change.table, change.verdict] += change.size
+        size: dict[tuple[str, str], float] = {}
+        for change in (c for c in changes if c.healed is healed):
+            key = (change.table, change.verdict)
+            size[key] = size.get(key, 0.0) + change.size
         for key, number in count.most_common():
             print(f"  {words}: {key[0]} {key[1]}: {number} elements, {size[key]:.1f} m or m2")
     for healed, words in ((False, "worse"), (True, "better")):

@@ -61,7 +61,7 @@ def draw_floor(truth: Sequence[TrueFeature], elements: Mapping[str, Array]) -> s
     str
         An element `svg`, one unit a metre.
     """
-    shapes = shapely.from_wkb(np.asarray(elements["geometry"], object))
+    shapes: list[BaseGeometry] = list(shapely.from_wkb(np.asarray(elements["geometry"], object)))
     bounds = [g for kind, g, _ in truth if kind in ("room", "wall", "surface")]
     low_x, low_y, high_x, high_y = shapely.total_bounds([*bounds, *shapes])
     box = (low_x - _MARGIN_M, -high_y - _MARGIN_M)
@@ -83,12 +83,13 @@ def _draw_truth(truth: Sequence[TrueFeature]) -> Iterator[str]:
                 yield f'<path style="{style}{thick}" d="{path_data(geometry)}"/>'
 
 
-def _draw_elements(elements: Mapping[str, Array], shapes: Array) -> Iterator[str]:
+def _draw_elements(elements: Mapping[str, Array], shapes: Sequence[BaseGeometry]) -> Iterator[str]:
     """Yield what is right first, so that errors lie on top; rooms below all else."""
     tables, verdicts = (np.asarray(elements[name]).astype(str) for name in ("table", "verdict"))
     order = np.lexsort((verdicts != "right", tables != "room"))
     for i in order.tolist():
-        verdict, colour = verdicts[i], colour_of(verdicts[i])
+        verdict = str(verdicts[i])
+        colour = colour_of(verdict)
         if tables[i] == "room":
             right = "fill:none" if verdict == "right" else f"fill:{colour};fill-opacity:0.12"
             style = f"{right};stroke:{colour};stroke-width:0.03"

@@ -22,8 +22,6 @@ REFLECTIVITY = {
     "mirror": 5.0,
     "polished": 10.0,
     "person": 40.0,
-    "mirror": 10.0,
-    "polished": 20.0,
 }
 
 
