@@ -29,15 +29,17 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
     revision : str
         Any name that git knows the commit by.
     words : sequence of str
-        See `floors.choose_floors`.
+        See `floors.choose_floors`; words with an equals sign are settings that all plans are made
+        with, as `advanced.plan.surfaces=labels`.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    chosen = floors.choose_floors(data, words)
+    settings = [word for word in words if "=" in word]
+    chosen = floors.choose_floors(data, [word for word in words if word not in settings])
     recorded = recordings.record_floors(chosen, folder)
-    results = plans.make_plans(project, revision, folder, recorded)
+    results = plans.make_plans(project, revision, folder, recorded, settings)
     measures, elements = scoring.score_floors(chosen, recorded, results)
-    commit = guard.name_commit(project, revision)
-    home = folder / SCORES / commit[:12]
+    name = "+".join([guard.name_commit(project, revision)[:12], *settings])
+    home = folder / SCORES / name
     home.mkdir(parents=True, exist_ok=True)
     for name, table in (("measures", measures), ("elements", elements)):
         table.to_parquet(home / f"{name}.parquet", index=False)
@@ -47,7 +49,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
         floor.name: scoring.read_true_features(recorded[floor.name], _drawing(floor, folder))
         for floor in chosen
     }
-    page.write_page(home / "index.html", f"Plans of {commit[:12]}", measures, elements, truths)
+    page.write_page(home / "index.html", f"Plans of {name}", measures, elements, truths)
     summary.print_summary(measures)
     print(f"realistic: {home / 'index.html'}", flush=True)
 

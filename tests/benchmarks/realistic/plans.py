@@ -7,8 +7,10 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import guard
+import yaml
 
 from realistic.recordings import Recorded
 
@@ -26,7 +28,11 @@ STAGES = (
 
 
 def make_plans(
-    project: Path, revision: str, folder: Path, recorded: Mapping[str, Recorded]
+    project: Path,
+    revision: str,
+    folder: Path,
+    recorded: Mapping[str, Recorded],
+    settings: Sequence[str] = (),
 ) -> Path:
     """Make the plans of floors with the code of a commit.
 
@@ -38,6 +44,8 @@ def make_plans(
     folder : Path
         Gets `code/`, a checkout with its results; a second call reruns what changed in between.
     recorded : dict of str to recordings.Recorded
+    settings : sequence of str
+        As `advanced.plan.surfaces=labels`, for all floors.
 
     Returns
     -------
@@ -49,16 +57,19 @@ def make_plans(
     for first in range(0, len(names), _AT_ONCE):
         part = names[first : first + _AT_ONCE]
         print(f"realistic: plans {first + 1} to {first + len(part)} of {len(names)}", flush=True)
-        _run_workflow(code, part, recorded)
+        _run_workflow(code, part, recorded, settings)
     return code / "results"
 
 
-def _run_workflow(code: Path, names: Sequence[str], recorded: Mapping[str, Recorded]) -> None:
+def _run_workflow(
+    code: Path, names: Sequence[str], recorded: Mapping[str, Recorded], settings: Sequence[str]
+) -> None:
     given = json.dumps([str(recorded[name].dataset) for name in names])
     targets = [f"results/{name}/plan/{table}.parquet" for name in names for table in _TABLES]
     environment = {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "all"]
     command += ["--keep-going", "--rerun-incomplete", "--config", f"dataset={given}"]
+    command += ["--configfile", str(_write_settings(code.parent, settings))] if settings else []
     with (code.parent / "workflow.log").open("a") as log:
         # one that fails is told with its last words by `last_words`
         subprocess.run(
@@ -69,6 +80,21 @@ def _run_workflow(code: Path, names: Sequence[str], recorded: Mapping[str, Recor
             stderr=subprocess.STDOUT,
             check=False,
         )
+
+
+def _write_settings(folder: Path, settings: Sequence[str]) -> Path:
+    """Write settings as a file of sections, and return it."""
+    tree: dict[str, Any] = {}
+    for setting in settings:
+        keys, _, value = setting.partition("=")
+        *sections, name = keys.split(".")
+        branch = tree
+        for section in sections:
+            branch = branch.setdefault(section, {})
+        branch[name] = yaml.safe_load(value)
+    path = folder / "settings.yaml"
+    path.write_text(yaml.safe_dump(tree))
+    return path
 
 
 def last_words(results: Path, name: str) -> str:
