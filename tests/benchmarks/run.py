@@ -42,7 +42,8 @@ with a truth, by the code of a commit, and scores them in the terms of the field
 and elements, and a page with a picture of every floor, in FOLDER/scores/COMMIT. Recordings are
 simulated once and kept. Half of the kinds of buildings are for tuning, the others are only reported
 on. Words with an equals sign are settings that the plans are made with, as
-advanced.plan.surfaces=labels. `compare_realistic` says what changed between two such folders, element by element.
+advanced.plan.surfaces=labels. `compare_realistic` says what changed between two such folders,
+element by element.
 
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
