@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -39,6 +41,15 @@ def test_what_rays_pass_over_is_none():
     # at 4 m beams of 15 degrees reach 1.47 m
     assert kept([(4, -1, 4, 1, 0, 1.2)], [WALL]) == [False]
     assert kept([(4, -1, 4, 1, 0, 2.6)], [WALL]) == [True]
+
+
+def test_where_all_scans_decide_what_rays_pass_over_stays():
+    low, behind = (4, -1, 4, 1, 0, 1.2), WALL
+    rows = [row(*low), row(*low, rmse_m=0.03)]
+    limits = replace(LIMITS, by_scan=False)
+    # what scatters by more than a wall is none all the same
+    assert furniture.keep_walls(rows, view(returns([low, behind])), limits) == rows[:1]
+    assert furniture.keep_walls(rows, view(returns([low, behind])), LIMITS) == []
 
 
 def test_nothing_behind_is_no_evidence():

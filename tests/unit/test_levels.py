@@ -89,3 +89,43 @@ class TestFloor:
         assert levels.find_floor_z(moved) - up_m == pytest.approx(
             levels.find_floor_z(np.array(z_m)), abs=1e-9
         )
+
+
+class TestPlacedFloor:
+    """Of a sensor that looks upward: 1000 points of walls and a ceiling at 2.6 m."""
+
+    @staticmethod
+    def seen_from_below(low_m, ceiling=1000, ceiling_m=2.6):
+        rng = np.random.default_rng(7)
+        ceiling_z_m = rng.normal(ceiling_m, 0.005, ceiling)
+        z_m = np.concatenate([np.full(200, low_m), rng.uniform(low_m, ceiling_m, 1000)])
+        return np.concatenate([z_m, ceiling_z_m]), ceiling_z_m
+
+    def test_what_is_75_cm_high_below_a_ceiling_is_a_table(self):
+        z_m, steep_z_m = self.seen_from_below(low_m=0.75)
+        assert levels.find_floor_z(z_m) == pytest.approx(0.75, abs=0.01)
+        assert levels.place_floor_z(z_m, steep_z_m) == pytest.approx(2.6 - 2.5, abs=0.04)
+
+    def test_a_floor_that_was_seen_stays_under_any_ceiling(self):
+        z_m, steep_z_m = self.seen_from_below(low_m=0.0)
+        assert levels.place_floor_z(z_m, steep_z_m) == levels.find_floor_z(z_m)
+
+    def test_a_lidar_that_looks_level_keeps_what_is_lowest(self):
+        """Few of its rays go up steeply, and none of them are asked."""
+        z_m, steep_z_m = self.seen_from_below(low_m=0.75, ceiling=100)
+        assert levels.place_floor_z(z_m, steep_z_m) == levels.find_floor_z(z_m)
+
+    def test_steep_rays_at_walls_alone_show_no_ceiling(self):
+        z_m, _ = self.seen_from_below(low_m=0.75, ceiling=0)
+        steep_z_m = z_m[z_m > 1.5]
+        assert levels.place_floor_z(z_m, steep_z_m) == levels.find_floor_z(z_m)
+
+    @given(st.floats(-50, 50))
+    def test_it_moves_with_the_points(self, up_m):
+        z_m, steep_z_m = self.seen_from_below(low_m=0.75)
+        placed_m = levels.place_floor_z(z_m + up_m, steep_z_m + up_m) - up_m
+        # a ceiling may lie across two layers of 5 cm
+        assert placed_m == pytest.approx(levels.place_floor_z(z_m, steep_z_m), abs=0.05)
+
+    def test_without_any_point_there_is_none(self):
+        assert np.isnan(levels.place_floor_z(np.empty(0), np.empty(0)))

@@ -44,6 +44,20 @@ def test_heights_are_counted_from_the_floor_or_from_zero_in_the_plane():
     assert flat.ground_z_m == 0 and np.isnan(flat.floor_z_m)
 
 
+def test_a_sensor_that_looks_upward_has_its_floor_below_the_ceiling_it_sees():
+    """From 1 m it sees a table's top at 0.7 m, walls 4 m away, and the ceiling at 2.6 m."""
+    at = np.linspace(-0.5, 0.5, 100)
+    table = [(1.0, y_m, 0.7) for y_m in at]
+    sides = [(4.0, y_m, 0.7 + abs(y_m)) for y_m in at]
+    ceiling = [(1.0, y_m, 2.6) for y_m in at]
+    looked = {0: np.array([0.0, 0.0, 1.0])}
+    found = gather_rays([(0, table + sides + ceiling)], looked, planar=False)
+    assert found.floor_z_m == pytest.approx(2.6 - 2.5, abs=0.03)
+    # as far away it is met no more steeply than by a lidar that looks level
+    far = [(6.0, y_m, z_m) for _, y_m, z_m in ceiling]
+    assert gather_rays([(0, table + sides + far)], looked, planar=False).floor_z_m == 0.7
+
+
 def test_the_way_of_a_ray_is_from_its_own_sensor_and_level():
     found = rays((ORIGIN, [NORTH, EAST]), ((5, 0, 1), [(5, 3, 0)]))
     assert found.level_way_m.tolist() == [[1, 0], [0, 1], [0, 3]]

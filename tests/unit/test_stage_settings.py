@@ -36,6 +36,8 @@ OF_THE_WORKFLOW = {
     "simulate.recording",
     "advanced.jobs.chunk_gb",
 }
+# what stages receive as yes or no
+OF_A_CHOICE = {"advanced.plan.surfaces"}
 
 
 def received(settings):
@@ -85,12 +87,28 @@ def leaves(values):
             yield value
 
 
-@pytest.mark.parametrize("key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW])
+@pytest.mark.parametrize(
+    "key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW | OF_A_CHOICE]
+)
 def test_every_key_reaches_a_stage(key):
     changed = 77.5  # no default
     assert changed not in leaves(received(SETTINGS))
     # in the plan doors end a little lower
     assert changed in leaves(received(with_value(key, changed)))
+
+
+@pytest.mark.parametrize(("surfaces", "by_scan"), [("rules", True), ("labels", False)])
+def test_labels_leave_it_to_all_scans_together_what_is_furniture(surfaces, by_scan):
+    settings = with_value("advanced.plan.surfaces", surfaces)
+    assert stage_settings.select_plan(settings)["furniture"]["by_scan"] is by_scan
+    for name in ("cluster_ransac", "iterative_ransac"):
+        assert stage_settings.select_extractor(settings, name)["by_scan"] is by_scan
+    made = planning.make_plan_settings(**stage_settings.select_plan(settings))
+    assert made.furniture.by_scan is by_scan
+
+
+def test_rules_decide_what_surfaces_are_unless_labels_are_asked_for():
+    assert stage_settings.select_plan(SETTINGS)["furniture"]["by_scan"]
 
 
 def test_nothing_given_is_changed():

@@ -65,6 +65,9 @@ class FurnitureLimits:
         Walls on one line no farther apart than this are parts of one, if what is between leads on.
     corner_m : float
         Ends no farther apart than this meet, and what prolongs a face pauses for no longer.
+    by_scan : bool
+        Whether single scans leave out what they take for furniture; otherwise all of them together
+        decide (`plan.model`).
     """
 
     max_rmse_m: float
@@ -79,6 +82,7 @@ class FurnitureLimits:
     stub_length_m: float
     door_width_m: float
     corner_m: float
+    by_scan: bool = True
 
 
 def find_furniture_fronts(
@@ -129,7 +133,7 @@ def keep_walls(rows: list[Row], scan: RaySet | None, limits: FurnitureLimits) ->
     if not rows:
         return rows
     values = np.array(rows, float)
-    if scan is None:
+    if scan is None or not limits.by_scan:
         is_wall = values[:, 7] <= limits.max_rmse_m
     else:
         is_wall = _upright_walls(values, scan, limits)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LineString, Polygon
 
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan.faces.intervals import FaceInterval
@@ -29,6 +29,8 @@ _TYPES: dict[str, type] = {
     "string": object,
     "binary": object,
 }
+
+_LEAF_M = 0.04  # thickness of a door's leaf (DIN 68706: 38 to 42 mm)
 
 Row = dict[str, Any]
 """Values of a table's row by column."""
@@ -225,11 +227,25 @@ def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
     return columns_of_rows(rows, schemas.FREE)
 
 
-def furniture_columns(pieces: Iterable[Piece], floor_z_m: float) -> dict[str, Array]:
-    """Return the rows of `schemas.FURNITURE`, in the order given."""
-    rows = [
+def draw_leaf(ends_m: FloatArray) -> Polygon:
+    """Return the ground that a leaf hangs over, of its surface (2, 2) from end to end."""
+    return LineString(ends_m).buffer(_LEAF_M / 2, cap_style="flat")
+
+
+def furniture_columns(
+    pieces: Iterable[Piece], floor_z_m: float, *, leaves_m: Sequence[FloatArray] = ()
+) -> dict[str, Array]:
+    """Return the rows of `schemas.FURNITURE`: pieces in the order given, then open leaves.
+
+    Parameters
+    ----------
+    pieces : iterable of pieces.Piece
+    floor_z_m : float
+    leaves_m : sequence of (2, 2) float64
+        The surfaces of leaves, from end to end.
+    """
+    rows: list[Row] = [
         {
-            "furniture": number,
             "kind": piece.kind,
             "area_m2": piece.outline.area,
             "z_min_m": piece.z_min_m + floor_z_m,
@@ -238,9 +254,16 @@ def furniture_columns(pieces: Iterable[Piece], floor_z_m: float) -> dict[str, Ar
             "n_scans": piece.n_scans,
             "geometry": shapely.to_wkb(piece.outline),
         }
-        for number, piece in enumerate(pieces)
+        for piece in pieces
     ]
-    return columns_of_rows(rows, schemas.FURNITURE)
+    for ends_m in leaves_m:
+        body = draw_leaf(ends_m)
+        unknown = dict.fromkeys(("z_min_m", "z_max_m"), math.nan)
+        shape = {"area_m2": body.area, "geometry": shapely.to_wkb(body)}
+        rows.append({"kind": schemas.LEAF, "n_points": 0, "n_scans": 0, **unknown, **shape})
+    return columns_of_rows(
+        [{"furniture": number, **row} for number, row in enumerate(rows)], schemas.FURNITURE
+    )
 
 
 def columns_of_rows(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:

@@ -27,6 +27,7 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
 from scanplan.plan.rooms import room_bounds
@@ -224,7 +225,9 @@ def make_plan(
         rooms=plan_tables.room_columns(spaces.rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
         free=plan_tables.free_columns(free_floor),
-        furniture=plan_tables.furniture_columns(spaces.pieces, floor_z_m),
+        furniture=plan_tables.furniture_columns(
+            spaces.pieces, floor_z_m, leaves_m=surfaces.open_leaves_m
+        ),
         n_lines=surfaces.n_lines,
         n_dropped=surfaces.n_dropped,
         range_errors_m=errors_m,
@@ -246,6 +249,8 @@ class _Surfaces:
         Ground behind fronts of furniture and under leaves of doors, of planar scans.
     leaves : list of leaves.Leaf
         Of open doors, of planar scans.
+    open_leaves_m : list of (2, 2) float64
+        The surfaces of open leaves that labels tell from walls, from end to end.
     n_lines, n_dropped : int
         As in `Plan`.
     """
@@ -256,6 +261,7 @@ class _Surfaces:
     unpaired_m: float
     furnished: list[BaseGeometry]
     leaves: list[Leaf]
+    open_leaves_m: list[FloatArray]
     n_lines: int
     n_dropped: int
 
@@ -317,26 +323,23 @@ class _Survey:
 
     def find_surfaces(self, segments: Columns) -> _Surfaces:
         """Return walls with their openings, kinds of openings not yet decided."""
-        reading = self.settings.reading
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
-            *(candidates, self.rays, self.settings.merge, reading),
+            *(candidates, self.rays, self.settings.merge, self.settings.reading),
             *(self.settings.furniture, self.settings.pairs),
         )
         walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
-        walls = windows.add_windows(
-            *(walls, self.rays),
-            min_width_m=min_width_m,
-            band_m=reading.band_m,
-        )
-        walls, tops_m = half_height.drop_low_surfaces(
-            walls,
-            wall_height_m=self.settings.furniture.wall_height_m,
-            furniture_height_m=self.settings.furniture.furniture_height_m,
-            furniture_side_m=self.settings.furniture.furniture_depth_m,
-        )
+        open_leaves_m: list[FloatArray] = []
+        if self.labels:
+            labelled = label_surfaces(
+                walls, self.rays, max_opening_m=self.settings.openings.max_opening_m
+            )
+            walls, tops_m = labelled.walls, labelled.tops_m
+            open_leaves_m = labelled.leaves_m
+        else:
+            walls, tops_m = self._find_windows(walls)
         glass_walls = room_bounds.find_glass_walls(
             walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
         )
@@ -348,8 +351,28 @@ class _Survey:
             unpaired_m=unpaired_m,
             furnished=furnished,
             leaves=leaves,
+            open_leaves_m=open_leaves_m,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
+        )
+
+    @property
+    def labels(self) -> bool:
+        """Whether labels decide what surfaces are."""
+        return not self.settings.furniture.by_scan
+
+    def _find_windows(self, walls: list[PlanWall]) -> tuple[list[PlanWall], list[float]]:
+        """Return walls with their windows, and how high they are, without what is as low."""
+        with_windows = windows.add_windows(
+            *(walls, self.rays),
+            min_width_m=self.settings.openings.min_opening_m,
+            band_m=self.settings.reading.band_m,
+        )
+        return half_height.drop_low_surfaces(
+            with_windows,
+            wall_height_m=self.settings.furniture.wall_height_m,
+            furniture_height_m=self.settings.furniture.furniture_height_m,
+            furniture_side_m=self.settings.furniture.furniture_depth_m,
         )
 
     def _make_walls(
@@ -441,8 +464,10 @@ class _Survey:
             threads=self.threads,
         )
         strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
+        # returns of leaves are explained, as those of walls are
+        leaves = [plan_tables.draw_leaf(ends_m) for ends_m in surfaces.open_leaves_m]
         pieces = find_pieces(
-            *(self.rays, strips),
+            *(self.rays, [*strips, *leaves]),
             *([room.polygon for room in rooms], self.views),
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
@@ -470,6 +495,8 @@ class _Survey:
 
     def decide_kinds(self, surfaces: _Surfaces, rooms: list[Room]) -> list[PlanWall]:
         """Return walls with their openings as the kinds that rays show them to be."""
+        if self.labels:
+            return surfaces.walls
         return opening_kinds.decide_kinds(
             *(surfaces.walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
             ways_m=[leaf.way_m for leaf in surfaces.leaves],

@@ -32,6 +32,7 @@ _FURNITURE = (
     "stub_length_m",
     "door_width_m",
     "corner_m",
+    "by_scan",
 )
 _THESIS_RANSAC = (
     "inlier_m",
@@ -120,6 +121,7 @@ def select_extractor(settings: Settings, extractor: str) -> Keywords:
         "wall_height_m": building["wall_height_m"],
         "furniture_height_m": building["furniture_height_m"],
         "seed": settings["seed"],
+        "by_scan": select_section(settings, "plan")["surfaces"] == "rules",
     }
     known = shared | measures
     if extractor not in _THESIS:

@@ -108,14 +108,14 @@ class SentRays:
         NaN where too few are to be expected for anything to be said, or fewer scans than
         `least_scans` sent any and these not `lone_rays`.
         """
-        expected = _sum_neighbours(self.expected, self.width)
-        occluded = _sum_neighbours(self.occluded, self.width)
+        expected = sum_neighbours(self.expected, self.width)
+        occluded = sum_neighbours(self.occluded, self.width)
         # where things hide the surface from a scan it says nothing: rays along the tops of
         # furniture get lost
         clear = occluded < STRAY_SHARE * expected
         reached = ((expected - occluded) * clear).sum(axis=0)
-        returned = (_sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
-        in_wall = (_sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
+        returned = (sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
+        in_wall = (sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
         n_scans = (clear & (expected >= FEW)).sum(axis=0)
         enough = (n_scans >= least_scans) & (reached >= self.least_rays)
         enough |= reached >= self.lone_rays
@@ -125,7 +125,7 @@ class SentRays:
     def lost(self) -> FloatArray:
         """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
         reached, returned, _ = self.reached(least_scans=2)
-        n_columns = _sum_neighbours(np.ones((1, self.expected.shape[1])), self.width)[0]
+        n_columns = sum_neighbours(np.ones((1, self.expected.shape[1])), self.width)[0]
         return np.nan_to_num(np.maximum(reached - returned, 0.0)) / n_columns
 
 
@@ -237,7 +237,7 @@ def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> Floa
     return below + (at - row) * (usual[scan, row + 1] - below)
 
 
-def _sum_neighbours(rows: Array, width: int) -> FloatArray:
+def sum_neighbours(rows: Array, width: int) -> FloatArray:
     """Return running sums over so many columns around each, of rows (s, n)."""
     n_rows, n_columns = rows.shape
     # numpy's own padding takes ten times as long as the sums

@@ -9,6 +9,10 @@ _LOWEST_PERCENTILE = 1  # fewer returns lie below the floor, by reflections
 SEARCH_M = 0.5
 """Above the lowest points: less than furniture is high, and half of the least storey."""
 _LEAST_POINTS = 30  # fewer show no level
+_STEEP_SHARE = 0.1  # of all returns: a sensor that looks upward has many more
+_CEILING_SHARE = 0.2  # in one layer of 5 cm: walls alone fill all layers alike
+_LEAST_STOREY_M = 2.1  # clear height; a lower one is no storey that people stand in
+_USUAL_STOREY_M = 2.5  # of dwellings and offices, where nothing else is known
 _PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
 
 
@@ -31,6 +35,31 @@ def find_floor_z(z_m: FloatArray) -> float:
     if len(z_m) == 0:
         return np.nan
     return float(np.median(z_m[np.abs(z_m - _find_lowest(z_m)) <= CELL_M]))
+
+
+def place_floor_z(z_m: FloatArray, steep_z_m: FloatArray) -> float:
+    """Return the height of the floor, or of where one would be where only a ceiling was seen.
+
+    A sensor that looks upward sees tables, and no floor: what is nearer below the ceiling than any
+    storey is high is none.
+
+    Parameters
+    ----------
+    z_m : (n,) float
+        Heights of points of scans in space, finite.
+    steep_z_m : (k,) float
+        Of those that rays reached steeply from below: a ceiling's, for the most part.
+    """
+    floor_z_m = find_floor_z(z_m)
+    if len(steep_z_m) < max(_LEAST_POINTS, _STEEP_SHARE * len(z_m)):
+        return floor_z_m
+    low_m = float(steep_z_m.min())
+    layer = np.bincount(((steep_z_m - low_m) / CELL_M).astype(np.int64))
+    ceiling_z_m = low_m + (int(layer.argmax()) + 0.5) * CELL_M
+    is_level = layer.max() >= _CEILING_SHARE * len(steep_z_m)
+    if is_level and ceiling_z_m - floor_z_m < _LEAST_STOREY_M:
+        return ceiling_z_m - _USUAL_STOREY_M
+    return floor_z_m
 
 
 def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from scanplan.rays import azimuth_sectors, beam_spread, expected_returns, levels
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray
 
+_STEEP = np.tan(np.radians(20))  # up: beams of a lidar that looks level go no steeper
 _TURN = 10.0  # more than a turn, so that the keys of scans do not overlap
 
 
@@ -211,9 +212,20 @@ def gather_rays(
         first=first,
         azimuth_rad=azimuth_rad,
         xyz_m=xyz_m,
-        floor_z_m=np.nan if planar else levels.find_floor_z(xyz_m[:, 2]),
+        floor_z_m=np.nan
+        if planar
+        else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
         planar=bool(planar),
     )
+
+
+def _steep_heights_m(
+    xyz_m: FloatArray, scan_ids: Iterable[int], first: IntArray, sensors_m: Mapping[int, FloatArray]
+) -> FloatArray:
+    """Return the heights (k,) of points that rays reached from below, steeper than `_STEEP`."""
+    sensor_m = np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3)
+    way_m = xyz_m - np.repeat(sensor_m, np.diff(first), axis=0)
+    return xyz_m[way_m[:, 2] > _STEEP * np.hypot(way_m[:, 0], way_m[:, 1]), 2]
 
 
 def _argsort_stably(values: FloatArray) -> IntArray:

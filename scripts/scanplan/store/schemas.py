@@ -318,8 +318,8 @@ Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the 
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
 corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
 """
-PIECE, COLUMN = "furniture", "column"
-"""Kinds of what stands in rooms: a column goes on to the ceiling."""
+PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
+"""Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""
 FURNITURE = Schema(
     "furniture",
     2,
@@ -336,7 +336,7 @@ FURNITURE = Schema(
 )
 """What stands in rooms and is no wall: outlines, by the points of chosen scans that show it.
 
-Of `kind` `PIECE` or `COLUMN`.
+Of `kind` `PIECE`, `COLUMN` or `LEAF`.
 Heights are in the map frame, NaN of planar scans.
 """
 EVIDENCE = Schema(

@@ -163,6 +163,7 @@ def find_face_intervals(
     door_height_m: float,
     max_gap_m: float,
     foreign_m: Sequence[tuple[float, float]] = (),
+    keep_low: bool = False,
 ) -> list[FaceInterval]:
     """Find what is wall along a line.
 
@@ -178,6 +179,8 @@ def find_face_intervals(
         What is higher says nothing about a way through.
     max_gap_m : float, >= 0
         Longest gap that is wall all the same where no ray went through.
+    keep_low : bool
+        Whether what rays of scans in space pass over is kept, too.
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are owned by these, so no
         interval begins or ends there.
@@ -197,7 +200,7 @@ def find_face_intervals(
     intervals = []
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
         overlooked = is_overlooked[first : last + 1]
-        if overlooked.sum() < (~overlooked).sum():
+        if (keep_low and not seen.planar) or overlooked.sum() < (~overlooked).sum():
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
             intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))

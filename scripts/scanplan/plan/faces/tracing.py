@@ -98,6 +98,7 @@ def trace_faces(
         intervals.find_face_intervals,
         door_height_m=reading.door_height_m,
         max_gap_m=reading.max_gap_m,
+        keep_low=not furniture.by_scan,
     )
     observations = _observe_lines(face_candidates, rays, reading)
     owners = selection.select_walls(find_intervals(seen) for seen in observations)
@@ -157,7 +158,9 @@ class _FaceSelection:
             [i for of_line in dense for i in of_line if i.length_m >= self.merging.min_length_m]
         )
         supported = [interval for of_line in dense for interval in self._supported(of_line, found)]
-        return _without_furniture(self.merging.remove_doubles(supported), self.furniture)
+        single = self.merging.remove_doubles(supported)
+        is_decided_later = not self.furniture.by_scan and single and not single[0].seen.planar
+        return single if is_decided_later else _without_furniture(single, self.furniture)
 
     def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
         """Return intervals without overshoots, tails and stubs."""

@@ -1,0 +1,160 @@
+"""What a wall's line is along its way: the most probable labels, and how probable they are.
+
+A hidden semi-Markov chain: stretches of a kind, each with a density of its length, follow one
+another; all columns of a stretch have one sill and one lintel, which are summed over. The best
+kinds are found by dynamic programming, the probabilities by the forward-backward algorithm (Yu
+2010, Hidden semi-Markov models). Stretches begin and end where the likeliest label of single
+columns changes. For b such places it takes b squared steps for each label.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan.model import priors
+from scanplan.plan.model.surface_counts import COLUMN_M, SurfaceCounts
+from scanplan.types import FloatArray, IntArray
+
+_N_KINDS = len(priors.KINDS)
+_Reduction = Callable[..., FloatArray]
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A stretch of one kind.
+
+    Attributes
+    ----------
+    kind : str
+        One of `priors.KINDS`.
+    low_m, high_m : float
+        Along the wall's line.
+    sill_m, lintel_m : float
+        Between which heights above the floor it is what it is; NaN: from the floor, to any height.
+    p : float
+        Probability of its kind, in the mean of its length.
+    """
+
+    kind: str
+    low_m: float
+    high_m: float
+    sill_m: float
+    lintel_m: float
+    p: float
+
+    @property
+    def length_m(self) -> float:
+        """Length along the line."""
+        return self.high_m - self.low_m
+
+
+def label_line(counts: SurfaceCounts, *, is_outer: bool) -> list[Stretch]:
+    """Return the most probable stretches of a line, in order.
+
+    Parameters
+    ----------
+    counts : surface_counts.SurfaceCounts
+    is_outer : bool
+        Whether one side of it was seen alone: it may be a facade.
+    """
+    labels = priors.list_labels(counts.ends.shape[1])
+    likely = weigh_columns(counts, labels)
+    chain = _Chain(labels, likely, is_outer=is_outer)
+    shares = chain.kind_shares()
+    stretches = []
+    for begin, end, label in chain.best_path():
+        first, last = int(chain.cuts[begin]), int(chain.cuts[end])
+        width = np.diff(chain.cuts[begin : end + 1])
+        kind = int(labels.kind[label])
+        stretches.append(
+            Stretch(
+                kind=priors.KINDS[kind],
+                low_m=counts.first_m + first * COLUMN_M,
+                high_m=counts.first_m + last * COLUMN_M,
+                sill_m=float(labels.sill_m[label]),
+                lintel_m=float(labels.lintel_m[label]),
+                p=float(np.average(shares[begin:end, kind], weights=width)),
+            )
+        )
+    return stretches
+
+
+def weigh_columns(counts: SurfaceCounts, labels: priors.Labels) -> FloatArray:
+    """Return (c, l): how likely each label makes what is counted of each column, log."""
+    of_state = priors.weigh_states(counts.ends)
+    return np.einsum("crs,lrs->cl", of_state, labels.states)
+
+
+def _find_cuts(likely: FloatArray) -> IntArray:
+    """Return the places (b,) between columns where stretches may begin and end, with both ends."""
+    n = len(likely)
+    change = np.flatnonzero(np.diff(likely.argmax(axis=1))) + 1
+    around = np.concatenate([change - 1, change, change + 1, [0, n]])
+    return np.unique(around[(around >= 0) & (around <= n)])
+
+
+class _Chain:
+    """Sums over all ways to part a line into stretches, and the best of them."""
+
+    def __init__(self, labels: priors.Labels, likely: FloatArray, *, is_outer: bool):
+        self.cuts = _find_cuts(likely)
+        self._labels = labels
+        self._change = priors.log_change(is_outer=is_outer)
+        self._score = np.vstack([np.zeros(likely.shape[1]), np.cumsum(likely, axis=0)])[self.cuts]
+        self._n = len(self.cuts) - 1
+        self._rows = [np.flatnonzero(labels.kind == kind) for kind in range(_N_KINDS)]
+        of_length = priors.log_lengths(int(self.cuts[-1]))
+        # of each end, the score of every kind from every begin, (b, k)
+        self._inner = [self._score_kinds(end, of_length) for end in range(1, self._n + 1)]
+
+    def _score_kinds(self, end: int, of_length: FloatArray) -> FloatArray:
+        of_label = self._score[end] - self._score[:end] + self._labels.log_prior
+        length = self.cuts[end] - self.cuts[:end]
+        inner = np.full((end, _N_KINDS), -np.inf)
+        for kind, rows in enumerate(self._rows):
+            if len(rows):
+                inner[:, kind] = np.logaddexp.reduce(of_label[:, rows], axis=1)
+        return inner + of_length[:, length - 1].T
+
+    def _forward(self, add: _Reduction) -> tuple[FloatArray, FloatArray]:
+        """Return what enters each kind at each cut, and what ended in each there, (b, k)."""
+        entry = np.full((self._n + 1, _N_KINDS), -np.inf)
+        ended = np.full((self._n + 1, _N_KINDS), -np.inf)
+        entry[0] = priors.log_enter()
+        for end in range(1, self._n + 1):
+            ended[end] = add(self._inner[end - 1] + entry[:end], axis=0)
+            entry[end] = add(ended[end][:, None] + self._change, axis=0)
+        return entry, ended
+
+    def best_path(self) -> list[tuple[int, int, int]]:
+        """Return begin, end and label of the best stretches, in order, by numbers of cuts."""
+        entry, ended = self._forward(np.max)
+        path: list[tuple[int, int, int]] = []
+        end, kind = self._n, int(ended[self._n].argmax())
+        while end > 0:
+            begin = int((self._inner[end - 1][:, kind] + entry[:end, kind]).argmax())
+            gain = self._score[end] - self._score[begin] + self._labels.log_prior
+            rows = self._rows[kind]
+            path.append((begin, end, int(rows[gain[rows].argmax()])))
+            kind = int((ended[begin] + self._change[:, kind]).argmax())
+            end = begin
+        return path[::-1]
+
+    def kind_shares(self) -> FloatArray:
+        """Return the probability (n, k) of each kind between neighbouring cuts."""
+        entry, ended = self._forward(np.logaddexp.reduce)
+        whole = np.logaddexp.reduce(ended[self._n])
+        after = np.zeros(_N_KINDS)
+        entered = np.full((self._n + 1, _N_KINDS), -np.inf)
+        change = np.zeros((self._n + 1, _N_KINDS))
+        for end in range(self._n, 0, -1):
+            if end < self._n:
+                after = np.logaddexp.reduce(self._change + entered[end], axis=1)
+            onward = self._inner[end - 1] + after
+            entered[:end] = np.logaddexp(entered[:end], onward)
+            mass = np.exp(np.minimum(onward + entry[:end] - whole, 0.0))
+            change[:end] += mass
+            change[end] -= mass.sum(axis=0)
+        share = np.clip(np.cumsum(change, axis=0)[: self._n], 0.0, None)
+        return share / share.sum(axis=1, keepdims=True)

@@ -1,0 +1,171 @@
+"""The densities of labels: how rays end at each state of a surface, and what there is, how long.
+
+Each number is a share or a length that a person can state. Where it was set on buildings, they are
+those of the tuning half of the bench of realistic floors.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan.model.surface_counts import COLUMN_M, ROWS_M
+from scanplan.types import FloatArray, IntArray
+
+KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
+"""What a stretch is: wall; a wall that ends below the ceiling; nothing; a pane down to the floor; a
+way under a lintel; a hole or pane above a sill; a shut leaf behind the face, under a lintel."""
+SOLID, LOW, OPEN, GLASS, DOOR, WINDOW, SHUT = range(len(KINDS))
+_WALL, _FREE, _RECESS, _PANE = range(4)
+_ENDS = np.array(
+    (
+        ((0.89, 0.02, 0.01, 0.02, 0.06), (0.87, 0.03, 0.01, 0.02, 0.07)),
+        ((0.03, 0.04, 0.09, 0.56, 0.28), (0.03, 0.04, 0.09, 0.56, 0.28)),
+        ((0.10, 0.77, 0.03, 0.03, 0.07), (0.10, 0.77, 0.03, 0.03, 0.07)),
+        ((0.25, 0.10, 0.25, 0.27, 0.13), (0.04, 0.03, 0.09, 0.56, 0.28)),
+    )
+)
+# of a wall, a hole, a recess and a pane, of rays that come square and others: how many end at the
+# face, a little behind, in the wall's depth, beyond, nowhere. A pane answers square rays alone
+# (Foster, Sun, Park and Kuipers 2013, VisAGGE); what passes it is lost as often as through a hole
+_ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
+_WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
+_LOW_M, _GLASS_M, _LINTEL_M = (0.5, 2.3), (1.9, 2.7), (1.9, 2.7)
+_SILL_M, _WINDOW_TOP_M, _LEAST_WINDOW = (0.3, 1.7), (1.5, 3.1), 2
+# from where to where edges are looked for, above the floor; rows of a window at least
+_MEAN_M = {SOLID: 3.0, LOW: 2.0, OPEN: 1.5, GLASS: 2.5}
+"""Mean length of what has no usual one."""
+_LEAF_M = (0.9, 0.1)  # usual width of a door of one leaf (DIN 18101: 0.75 to 1.0), its deviation
+_FROM_SOLID = {
+    False: {DOOR: 0.72, WINDOW: 0.08, SHUT: 0.1, OPEN: 0.06, GLASS: 0.03, LOW: 0.01},
+    True: {DOOR: 0.12, WINDOW: 0.72, SHUT: 0.06, OPEN: 0.02, GLASS: 0.07, LOW: 0.01},
+}
+"""What interrupts a wall that was seen from both sides, and one that may be a facade."""
+_FROM_OTHERS: dict[int, dict[int, float]] = {
+    LOW: {SOLID: 0.8, OPEN: 0.2},
+    OPEN: {SOLID: 0.87, GLASS: 0.1, LOW: 0.03},
+    GLASS: {SOLID: 0.6, DOOR: 0.2, OPEN: 0.2},
+    DOOR: {SOLID: 0.9, GLASS: 0.1},
+    WINDOW: {SOLID: 1.0},
+    SHUT: {SOLID: 1.0},
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """Kinds with their heights.
+
+    Attributes
+    ----------
+    kind : (l,) int64
+        Row of `KINDS`.
+    sill_m, lintel_m : (l,) float64
+        Between which heights above the floor it is what it is; NaN: from the floor, to any height.
+    states : (l, r, 4) float64
+        1 for the state of each row of height: wall, free, recess or pane.
+    log_prior : (l,) float64
+        Of its heights, given its kind.
+    """
+
+    kind: IntArray
+    sill_m: FloatArray
+    lintel_m: FloatArray
+    states: FloatArray
+    log_prior: FloatArray
+
+
+def weigh_states(ends: FloatArray) -> FloatArray:
+    """Return (c, r, 4): how likely each state makes what is counted of each cell, log.
+
+    `ends` (c, r, 2, 5) are those of `surface_counts.SurfaceCounts`.
+    """
+    likely = np.einsum("crie,sie->crs", ends, np.log(_ENDS))
+    anything = ends.sum(axis=(2, 3)) * np.log(1 / ends.shape[-1])
+    odd = anything[..., None] + np.log(_ODD)
+    return _WITNESS * np.logaddexp(likely + np.log1p(-_ODD), odd)
+
+
+def list_labels(n_rows: int) -> Labels:
+    """Return the labels of a line whose heights are in so many rows."""
+    if n_rows == 1:
+        spans = [
+            *((SOLID, 0, 1, _WALL), (OPEN, 0, 1, _FREE), (GLASS, 0, 1, _PANE)),
+            *((DOOR, 0, 1, _FREE), (SHUT, 0, 1, _RECESS)),
+        ]
+    else:
+        spans = _list_spans(n_rows)
+    kind, low, high, state = np.array(spans).T
+    row = np.arange(n_rows)
+    is_within = (row >= low[:, None]) & (row < high[:, None])
+    # above what is low there is nothing, around all else wall
+    around = np.where(kind == LOW, _FREE, _WALL)
+    state_of_row = np.where(is_within, state[:, None], around[:, None])
+    count = np.bincount(kind, minlength=len(KINDS))
+    edges_m = ROWS_M if n_rows > 1 else np.full(2, np.nan)
+    return Labels(
+        kind=kind,
+        sill_m=np.where(low > 0, edges_m[np.minimum(low, len(edges_m) - 1)], np.nan),
+        lintel_m=np.where(high < n_rows, edges_m[np.minimum(high, len(edges_m) - 1)], np.nan),
+        states=(state_of_row[:, :, None] == np.arange(len(_ENDS))).astype(float),
+        log_prior=-np.log(count[kind]),
+    )
+
+
+def _list_spans(n_rows: int) -> list[tuple[int, int, int, int]]:
+    """Return kind, first row, row behind the last, and state, of labels in space."""
+    spans = [(SOLID, 0, n_rows, _WALL), (OPEN, 0, n_rows, _FREE), (GLASS, 0, n_rows, _PANE)]
+    spans += [(LOW, 0, top, _WALL) for top in _rows_between(_LOW_M)]
+    spans += [(GLASS, 0, top, _PANE) for top in _rows_between(_GLASS_M)]
+    for top in _rows_between(_LINTEL_M):
+        spans += [(DOOR, 0, top, _FREE), (SHUT, 0, top, _RECESS)]
+    for sill in _rows_between(_SILL_M):
+        for top in _rows_between(_WINDOW_TOP_M):
+            if top - sill >= _LEAST_WINDOW:
+                spans += [(WINDOW, sill, top, _FREE), (WINDOW, sill, top, _PANE)]
+    return spans
+
+
+def _rows_between(heights_m: tuple[float, float]) -> range:
+    first, last = np.searchsorted(ROWS_M, np.array(heights_m) - 1e-9)
+    return range(int(first), int(last) + 1)
+
+
+def log_lengths(longest: int) -> FloatArray:
+    """Return (k, d): how likely a stretch of each kind is of each length in columns, log."""
+    length_m = COLUMN_M * np.arange(1, longest + 1)
+    out = np.zeros((len(KINDS), longest))
+    for kind, mean_m in _MEAN_M.items():
+        out[kind] = -length_m / mean_m + np.log(COLUMN_M / mean_m)
+    usual = _normal(length_m, *_LEAF_M)
+    out[DOOR] = _log(0.75 * usual + 0.25 * _log_uniform(length_m, 0.55, 2.6))
+    out[SHUT] = _log(0.9 * usual + 0.1 * _log_uniform(length_m, 0.6, 2.0))
+    out[WINDOW] = _log(_log_uniform(length_m, 0.4, 4.0))
+    return out
+
+
+def log_change(*, is_outer: bool) -> FloatArray:
+    """Return (k, k): what follows what, log."""
+    shares = {SOLID: _FROM_SOLID[is_outer], **_FROM_OTHERS}
+    return np.stack([_log_shares(shares[kind]) for kind in range(len(KINDS))])
+
+
+def log_enter() -> FloatArray:
+    """Return (k,): what a line begins with, log."""
+    return _log_shares({SOLID: 0.8, LOW: 0.03, OPEN: 0.12, GLASS: 0.05})
+
+
+def _normal(x: FloatArray, mean: float, sigma: float) -> FloatArray:
+    return np.exp(-(((x - mean) / sigma) ** 2) / 2) / (sigma * np.sqrt(2 * np.pi))
+
+
+def _log_uniform(x: FloatArray, low: float, high: float) -> FloatArray:
+    return np.where((x >= low) & (x <= high), 1 / (x * np.log(high / low)), 0.0)
+
+
+def _log(density_per_m: FloatArray) -> FloatArray:
+    with np.errstate(divide="ignore"):
+        return np.log(density_per_m * COLUMN_M)
+
+
+def _log_shares(shares: dict[int, float]) -> FloatArray:
+    with np.errstate(divide="ignore"):
+        return np.log(np.array([shares.get(kind, 0.0) for kind in range(len(KINDS))]))

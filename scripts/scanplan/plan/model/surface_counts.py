@@ -1,0 +1,252 @@
+"""What rays say along a wall: witnesses by place along it, height, incidence and how rays end.
+
+Scans of one place see the same with the same errors: what they say of a cell is one witness,
+whatever the number of their rays. Planar scans have one row of heights.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.geometry.lines import Line
+from scanplan.rays import expected_returns
+from scanplan.rays.face_rays import FaceRays, cast_at_face
+from scanplan.rays.ray_set import RaySet
+from scanplan.rays.tolerances import BEHIND_M, FEW, STRAY_SHARE
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+COLUMN_M = 0.05
+"""Of a wall's length: a few times the noise of a range."""
+ROWS_M = np.arange(1, 43, 2) / 10
+"""Edges of the rows of heights: of beams 2 degrees apart two meet 0.2 m at 3 m."""
+AT_M = 0.04
+"""Returns this near to a face are at it: three times what they scatter by."""
+FACE, SHALLOW, DEEP, BEYOND, LOST = range(5)
+"""How a ray ends: at the face, a little behind it, in the wall's depth, beyond, or nowhere."""
+N_ENDS = 5
+_SHALLOW_M = 0.12  # leaves of doors hang no deeper, panes and the far sides of reveals do
+_SQUARE = np.tan(np.radians(10))  # a pane answers no farther from square: beams of 3 mrad on glass
+_TINY = 1e-9  # rays: none
+_PLACE_M = 0.5  # scans no farther apart are one place: what they see differs by less than a door
+_BANDS = 2  # rows that are asked together for what is lost: of single ones too little is expected
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A line of faces on one side of a wall.
+
+    Attributes
+    ----------
+    line : lines.Line
+        Its normal towards the sensors that see it.
+    deep_m : float
+        Returns this near behind it are in the wall.
+    spans_m : (n, 2) float64
+        From where to where along the wall it is asked.
+    """
+
+    line: Line
+    deep_m: float
+    spans_m: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceCounts:
+    """Witnesses of a stretch of a wall.
+
+    Attributes
+    ----------
+    first_m : float
+        Where the first column begins along the wall's line.
+    ends : (c, r, 2, 5) float64
+        Of each column and row of height, of rays that come square and of others: how many places
+        say that they end so.
+    """
+
+    first_m: float
+    ends: FloatArray
+
+    @property
+    def middles_m(self) -> FloatArray:
+        """Where the middle of each column is along the wall's line, (c,)."""
+        return self.first_m + COLUMN_M * (np.arange(len(self.ends)) + 0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """The cells of a stretch: where along which line, and how many columns and rows."""
+
+    wall: Line
+    first_m: float
+    n_columns: int
+    n_rows: int
+
+    @property
+    def ends_m(self) -> FloatArray:
+        return np.array([self.first_m, self.first_m + self.n_columns * COLUMN_M])
+
+    def columns_of(self, line: Line, along_m: FloatArray) -> IntArray:
+        """Return the columns of places along a line beside the wall; -1 beyond its ends."""
+        sign = float(np.sign(line.direction @ self.wall.direction))
+        own_m = sign * along_m + float(self.wall.along_m(line.centre)) - self.first_m
+        column = np.floor(own_m / COLUMN_M).astype(np.int64)
+        return np.where((column >= 0) & (column < self.n_columns), column, -1)
+
+
+def count_ends(
+    rays: RaySet, wall: Line, low_m: float, high_m: float, sides: Sequence[Side]
+) -> SurfaceCounts:
+    """Count what rays say of a wall between two places along its line, from all its sides.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+    wall : lines.Line
+        Along which columns are counted.
+    low_m, high_m : float
+    sides : sequence of Side
+    """
+    n_columns = max(int(np.ceil((high_m - low_m) / COLUMN_M)), 1)
+    grid = _Grid(wall, low_m, n_columns, 1 if rays.planar else len(ROWS_M) - 1)
+    place = _group_places(rays.sensors_m)
+    is_only = not any(side.line.normal @ sides[0].line.normal < 0 for side in sides)
+    total = np.zeros((n_columns, grid.n_rows, 2, N_ENDS))
+    for side in sides:
+        total += _count_side(rays, grid, side, place, is_only=is_only)
+    return SurfaceCounts(low_m, total)
+
+
+def _group_places(sensors_m: FloatArray) -> IntArray:
+    """Return the number of the place (s,) that each scan was taken at, by cells of the floor."""
+    cell = np.floor(sensors_m[:, :2] / _PLACE_M).astype(np.int64)
+    return np.unique(cell, axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def _count_side(
+    rays: RaySet, grid: _Grid, side: Side, place: IntArray, *, is_only: bool
+) -> FloatArray:
+    span_m = np.sort(side.line.along_m(grid.wall.at(grid.ends_m)))
+    face = cast_at_face(
+        *(rays, side.line, *span_m.tolist()),
+        at_m=AT_M,
+        occluded_within_m=expected_returns.NEAR_M,
+    )
+    end = _sort_ends(face, side.deep_m, is_only=is_only)
+    row = _rows_of(face, grid.n_rows)
+    column = grid.columns_of(side.line, face.along_m)
+    kept = np.flatnonzero((end >= 0) & (row >= 0) & (column >= 0))
+    shape = (int(place.max(initial=0)) + 1, grid.n_columns, grid.n_rows, 2, N_ENDS)
+    cells = (place[face.scan[kept]], column[kept], row[kept])
+    is_oblique = (~_is_square(rays, face)[kept]).astype(np.int64)
+    ended = np.ravel_multi_index((*cells, is_oblique, end[kept]), shape)
+    lost, n_lost = _find_lost(rays, face, grid, side, float(span_m[0]), place, shape)
+    key, inverse = np.unique(np.concatenate([ended, lost]), return_inverse=True)
+    counted = np.bincount(inverse, np.concatenate([np.ones(len(ended)), n_lost]), len(key))
+    weight = counted.astype(float)  # of nothing numpy counts in whole numbers
+    # what one place says of a cell is one witness
+    _, of_cell = np.unique(key // (2 * N_ENDS), return_inverse=True)
+    weight /= np.maximum(np.bincount(of_cell, weight), 1.0)[of_cell]
+    size = int(np.prod(shape[1:]))
+    counts = np.asarray(np.bincount(key % size, weight, minlength=size), float).reshape(shape[1:])
+    return counts * _is_asked(side, grid)[:, None, None, None]
+
+
+def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
+    """Return how each ray ends; -1 of one that says nothing."""
+    behind_m, is_facing = face.behind_m, face.is_facing
+    end = np.full(len(behind_m), -1)
+    end[is_facing & (behind_m >= -AT_M)] = BEYOND
+    end[is_facing & (behind_m >= -AT_M) & (behind_m <= deep_m)] = DEEP
+    end[is_facing & (behind_m >= -AT_M) & (behind_m <= _SHALLOW_M)] = SHALLOW
+    end[is_facing & (np.abs(behind_m) <= AT_M)] = FACE
+    if is_only:
+        # of what was seen from one side rays from the other say as much where they come through
+        end[~is_facing & (behind_m > BEHIND_M)] = BEYOND
+    return end
+
+
+def _rows_of(face: FaceRays, n_rows: int) -> IntArray:
+    if n_rows == 1:
+        return np.zeros(len(face.view), np.int64)
+    row = np.searchsorted(ROWS_M, face.height_m, "right") - 1
+    return np.where(row < n_rows, row, -1)
+
+
+def _is_square(rays: RaySet, face: FaceRays) -> BoolArray:
+    """Return which rays meet the face nearly square."""
+    away_m = face.along_m - face.views.sensor_along_m.take(face.view)
+    up_m = np.zeros(len(away_m))
+    if not rays.planar:
+        up_m = face.height_m + rays.ground_z_m - rays.sensors_m[face.scan, 2]
+    return np.hypot(away_m, up_m) <= _SQUARE * np.abs(face.views.side_m).take(face.view)
+
+
+def _is_asked(side: Side, grid: _Grid) -> BoolArray:
+    middle_m = grid.first_m + COLUMN_M * (np.arange(grid.n_columns) + 0.5)
+    begins_m, ends_m = side.spans_m.T
+    return ((middle_m[:, None] >= begins_m) & (middle_m[:, None] < ends_m)).any(axis=1)
+
+
+def _find_lost(
+    rays: RaySet,
+    face: FaceRays,
+    grid: _Grid,
+    side: Side,
+    first_m: float,
+    place: IntArray,
+    shape: tuple[int, ...],
+) -> tuple[IntArray, FloatArray]:
+    """Return the cells, as `shape` numbers them, that rays were lost at, and how many were."""
+    keys: list[IntArray] = [np.empty(0, np.int64)]
+    counts: list[FloatArray] = [np.empty(0)]
+    for rows, heights_m in _bands(grid.n_rows):
+        sent = expected_returns.count_sent_rays(
+            *(rays, face, first_m, grid.n_columns, COLUMN_M, heights_m)
+        )
+        view, number, missing = _find_missing(sent)
+        column = grid.columns_of(side.line, first_m + (number + 0.5) * COLUMN_M)
+        ok = column >= 0
+        view, number, missing, column = view[ok], number[ok], missing[ok], column[ok]
+        of_place = place[face.views.scan[sent.view[view]]]
+        for row in rows:
+            # of a row that the beams hardly reach as little is lost
+            own = _expect(rays, face, grid, first_m, row)[view, number]
+            share = own / np.maximum(sent.expected[view, number], _TINY)
+            cells = (of_place, column, np.full(len(column), row), np.ones(len(column), np.int64))
+            keys.append(np.ravel_multi_index((*cells, np.full(len(column), LOST)), shape))
+            counts.append(missing * np.minimum(share, 1.0))
+    return np.concatenate(keys), np.concatenate(counts)
+
+
+def _expect(rays: RaySet, face: FaceRays, grid: _Grid, first_m: float, row: int) -> FloatArray:
+    """Return how many rays views are expected to send to the columns of a row of heights."""
+    heights_m = expected_returns.ALL_HEIGHTS_M
+    if grid.n_rows > 1:
+        heights_m = (float(ROWS_M[row]), float(ROWS_M[row + 1]))
+    sent = expected_returns.count_sent_rays(
+        *(rays, face, first_m, grid.n_columns, COLUMN_M, heights_m)
+    )
+    return sent.expected
+
+
+def _bands(n_rows: int) -> Iterator[tuple[range, tuple[float, float]]]:
+    """Yield the rows that are asked together, and between which heights they are."""
+    if n_rows == 1:
+        yield range(1), expected_returns.ALL_HEIGHTS_M
+        return
+    for first in range(0, n_rows, _BANDS):
+        last = min(first + _BANDS, n_rows)
+        yield range(first, last), (float(ROWS_M[first]), float(ROWS_M[last]))
+
+
+def _find_missing(sent: expected_returns.SentRays) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return views, columns, and how many rays of these single views are missing there."""
+    expected, occluded, returned = (
+        expected_returns.sum_neighbours(part, sent.width)
+        for part in (sent.expected, sent.occluded, sent.returned)
+    )
+    is_clear = (occluded < STRAY_SHARE * expected) & (expected >= FEW)
+    missing = np.maximum(expected - occluded - returned, 0.0) * is_clear / sent.width
+    view, column = np.nonzero(missing)
+    return view, column, missing[view, column]

@@ -1,0 +1,67 @@
+"""The surfaces of a plan by the model: walls with what their lines' labels show, and leaves."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan.model import glass_views, things, wall_labels
+from scanplan.plan.model.surface_features import Surroundings
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
+
+_WALL_TOP_M = 2.0  # what ends lower, and has no other side, is a side of something
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledSurfaces:
+    """What stands.
+
+    Attributes
+    ----------
+    walls : list of plan_wall.PlanWall
+        With openings and their kinds.
+    tops_m : list of float
+        How high each wall ends; NaN: at the ceiling, or not known.
+    leaves_m : list of (2, 2) float64
+        The surfaces of open leaves, from end to end.
+    """
+
+    walls: list[PlanWall]
+    tops_m: list[float]
+    leaves_m: list[FloatArray]
+
+
+def label_surfaces(
+    walls: Sequence[PlanWall], rays: RaySet, *, max_opening_m: float
+) -> LabelledSurfaces:
+    """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
+
+    Parameters
+    ----------
+    walls : sequence of plan_wall.PlanWall
+        Faces in pairs; what is open of them is found anew.
+    rays : ray_set.RaySet
+    max_opening_m : float
+        What is open for longer parts a wall in two.
+    """
+    parts = [
+        (part, top_m)
+        for wall in walls
+        for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
+        if part.right or not top_m < _WALL_TOP_M
+    ]
+    of_part = [part for part, _ in parts]
+    shares = glass_views.find_glass_shares(of_part, rays).tolist()
+    around = Surroundings(of_part)
+    kinds = []
+    for number, (part, top_m) in enumerate(parts):
+        found = around.observe(number, wall_labels.count_wall(part, rays), top_m, shares[number])
+        kinds.append(int(np.argmax(things.weigh_things(found, planar=rays.planar))))
+    kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
+    return LabelledSurfaces(
+        walls=[wall for wall, _ in kept],
+        tops_m=[top_m for _, top_m in kept],
+        leaves_m=[p.ends for p, kind in zip(of_part, kinds, strict=True) if kind == things.LEAF],
+    )

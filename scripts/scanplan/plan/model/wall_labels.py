@@ -1,0 +1,157 @@
+"""Walls as the labels of their lines have them: openings, parts that end low, ends."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from scanplan.geometry.intervals import find_gaps
+from scanplan.geometry.lines import Line
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.model import line_labels, opening_edges, surface_counts
+from scanplan.plan.model.line_labels import Stretch
+from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
+from scanplan.plan.openings import CLOSED, Opening
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M
+from scanplan.rays.face_observation import FaceObservation
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray
+
+_DEEP_M = 0.4  # behind a face whose other side nobody saw: as thick as most facades
+
+
+def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
+    """Return what rays say of a wall from its one end to the other, from all its sides."""
+    return surface_counts.count_ends(
+        rays, wall.line, wall.low_m, wall.high_m, list(_list_sides(wall))
+    )
+
+
+def label_wall(
+    wall: PlanWall, rays: RaySet, *, max_opening_m: float
+) -> Iterator[tuple[PlanWall, float]]:
+    """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
+
+    Parameters
+    ----------
+    wall : plan_wall.PlanWall
+        Its openings are found anew.
+    rays : ray_set.RaySet
+    max_opening_m : float
+        What is open for longer parts a wall in two.
+    """
+    stretches = line_labels.label_line(count_wall(wall, rays), is_outer=not wall.right)
+    stretches[-1] = replace(stretches[-1], high_m=wall.high_m)
+    for run in _part_runs(stretches, max_opening_m):
+        part = _clip_wall(wall, run[0].low_m, run[-1].high_m)
+        if part.members and part.length_m >= END_M:
+            top_m = run[0].lintel_m if run[0].kind == "low" else np.nan
+            yield _open_wall(part, wall, run), top_m
+
+
+def _list_sides(wall: PlanWall) -> Iterator[Side]:
+    """Yield the lines of a wall's faces, each where it is the nearest of its side."""
+    deep_m = (_DEEP_M if np.isnan(wall.thickness_m) else wall.thickness_m) + AT_M
+    for members in (wall.left, wall.right):
+        spans_m = np.sort([wall.line.along_m(face.ends) for face in members], axis=-1)
+        order = np.argsort(spans_m.reshape(-1, 2)[:, 0]).tolist()
+        between_m = [(spans_m[a, 1] + spans_m[b, 0]) / 2 for a, b in pairwise(order)]
+        own: dict[int, tuple[FaceObservation, list[tuple[float, float]]]] = {}
+        for row, span_m in zip(order, pairwise([-np.inf, *between_m, np.inf]), strict=False):
+            seen = members[row].seen
+            own.setdefault(id(seen), (seen, []))[1].append(span_m)
+        for seen, asked_m in own.values():
+            yield Side(seen.line, deep_m, np.array(asked_m))
+
+
+def _part_runs(stretches: Sequence[Stretch], max_opening_m: float) -> Iterator[list[Stretch]]:
+    """Yield what is one wall: parted at what ends low, and where it is open for long."""
+    run: list[Stretch] = []
+    for stretch in stretches:
+        is_apart = stretch.kind == "open" and (stretch.length_m > max_opening_m or not run)
+        if not is_apart and stretch.kind != "low":
+            run.append(stretch)
+            continue
+        if run:
+            yield _without_open_end(run)
+            run = []
+        if stretch.kind == "low":
+            yield [stretch]
+    if run:
+        yield _without_open_end(run)
+
+
+def _without_open_end(run: list[Stretch]) -> list[Stretch]:
+    return run[:-1] if len(run) > 1 and run[-1].kind == "open" else run
+
+
+def _clip_wall(wall: PlanWall, low_m: float, high_m: float) -> PlanWall:
+    """Return a wall between two places along it, with what of its faces lies there."""
+    left, right = (
+        [part for face in side for part in _clip_face(wall, face, low_m, high_m)]
+        for side in (wall.left, wall.right)
+    )
+    if right and not left:
+        line = Line(wall.line.centre, -wall.line.normal)
+        return replace(wall, line=line, low_m=-high_m, high_m=-low_m, left=right, right=[])
+    return replace(wall, low_m=low_m, high_m=high_m, left=left, right=right)
+
+
+def _clip_face(
+    wall: PlanWall, face: FaceInterval, low_m: float, high_m: float
+) -> list[FaceInterval]:
+    begin_m, end_m = np.sort(face.line.along_m(wall.line.at(np.array([low_m, high_m]))))
+    low_m, high_m = max(face.low_m, float(begin_m)), min(face.high_m, float(end_m))
+    return [replace(face, low_m=low_m, high_m=high_m)] if high_m - low_m >= COLUMN_M else []
+
+
+def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWall:
+    """Return a part of a wall with its openings, its faces cut where these reach the floor."""
+    turned = part.line is not wall.line
+    openings = [
+        _turn(opening) if turned else opening
+        for stretch in run
+        if opening_edges.is_opening(stretch)
+        for opening in [opening_edges.measure_opening(wall, stretch)]
+    ]
+    openings.sort(key=lambda opening: opening.low_m)
+    opened = replace(part, openings=openings, closed=_list_hidden(part, openings))
+    ways = [opening for opening in openings if not opening.is_above_wall]
+    left, right = (
+        [piece for face in side for piece in _cut_face(part, face, ways)]
+        for side in (part.left, part.right)
+    )
+    # what is nothing but openings has no face left, and is drawn by what is seen in them
+    return replace(opened, left=left, right=right) if left else opened
+
+
+def _turn(opening: Opening) -> Opening:
+    """Return an opening along the same line, its direction turned round."""
+    return replace(opening, low_m=-opening.high_m, high_m=-opening.low_m)
+
+
+def _cut_face(wall: PlanWall, face: FaceInterval, ways: Sequence[Opening]) -> list[FaceInterval]:
+    """Return what is left of a face beside ways through its wall."""
+    ends_m = [wall.line.at(np.array([way.low_m, way.high_m])) for way in ways]
+    taken_m = np.array([np.sort(face.line.along_m(of)) for of in ends_m]).reshape(-1, 2)
+    if not len(taken_m):
+        return [face]
+    rest_m = find_gaps(taken_m, face.low_m, face.high_m)
+    return [
+        replace(face, low_m=low_m, high_m=high_m)
+        for low_m, high_m in rest_m.tolist()
+        if high_m - low_m >= COLUMN_M
+    ]
+
+
+def _list_hidden(wall: PlanWall, openings: Sequence[Opening]) -> list[Opening]:
+    """Return the pauses of a wall's faces that are no openings: nobody saw it there."""
+    spans_m: list[FloatArray] = [np.sort(wall.line.along_m(face.ends)) for face in wall.members]
+    spans_m += [np.array([opening.low_m, opening.high_m]) for opening in openings]
+    return [
+        Opening(low_m, high_m, CLOSED, 0, np.nan, np.nan, below_wall=False)
+        for low_m, high_m in find_gaps(np.array(spans_m)).tolist()
+        if high_m - low_m > COLUMN_M
+    ]
