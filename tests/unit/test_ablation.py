@@ -41,7 +41,7 @@ def plans(base, strays, tails):
     }
 
 
-HALF, FEWER, ALL = ({"door_recall": share} for share in (0.5, 0.3, 1.0))
+HALF, FEWER, ALL = ({"doors_driven_recall": share} for share in (0.5, 0.3, 1.0))
 FOUND = {
     "one": plans(("a", HALF), ("b", FEWER), ("a", HALF)),
     "other": plans(("c", ALL), ("c", ALL), ("c", ALL)),
@@ -85,7 +85,7 @@ def test_switches_answer_what_would_be_there_without_the_rule():
 def test_a_row_says_what_changes_in_the_mean_and_at_worst():
     row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, FOUND)
     assert row["changed"] == 1
-    assert row["door_recall"] == pytest.approx(-0.1)
+    assert row["doors_driven_recall"] == pytest.approx(-0.1)
     assert row["worst"] == "doors -0.200 (one)"
     assert row["lines"] == len(
         Path(find_holder("plan.furniture.strays:x")[0].__file__).read_text().splitlines()
@@ -93,7 +93,7 @@ def test_a_row_says_what_changes_in_the_mean_and_at_worst():
 
 
 def test_a_plan_that_cannot_be_made_without_a_rule_is_said_to_be_none():
-    found = {"one": plans(("a", {"door_recall": 0.5}), ("none: ValueError()", {}), ("a", {}))}
+    found = {"one": plans(("a", {"doors_driven_recall": 0.5}), ("none: ValueError()", {}), ("a", {}))}
     row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, found)
     assert row["worst"] == "no plan of one"
 
@@ -105,11 +105,11 @@ def test_the_table_is_printed_and_written_and_names_what_changes_nothing(tmp_pat
     assert (tmp_path / "planar_measured.md").read_text() in printed
     rows = list(csv.DictReader((tmp_path / "planar_measured.csv").read_text().splitlines()))
     assert [row["rule"] for row in rows] == ["strays", "tails"]
-    assert float(rows[0]["door_recall"]) == pytest.approx(-0.1)
+    assert float(rows[0]["doors_driven_recall"]) == pytest.approx(-0.1)
 
 
 def test_measures_stand_in_one_order_whichever_they_come_in():
-    scores = {"room_iou": 0.9, "door_recall": 0.5}
+    scores = {"room_iou": 0.9, "doors_driven_recall": 0.5}
     orders = (scores, dict(sorted(scores.items())))
     one, other = ({"drive": {ablation.BASE: {"scores": of}}} for of in orders)
     assert list(ablation_table.row_of_base(one)) == list(ablation_table.row_of_base(other))

@@ -55,13 +55,21 @@ def _score(
     if row["failed"]:
         return row, None
     folder = results / floor.name
-    placed = _place(folder, recorded)
+    placed = place_floor(folder, recorded)
     score = score_files.score_results(placed)
     row |= score.measures | peers.measure_peers(placed)
     return row, score.elements
 
 
-def _place(folder: Path, recorded: Recorded) -> score_files.Placed:
+def place_floor(folder: Path, recorded: Recorded) -> score_files.Placed:
+    """Place the results of a floor beside its truth, as its kind of truth asks for.
+
+    Parameters
+    ----------
+    folder : Path
+        results/<floor>.
+    recorded : Recorded
+    """
     if recorded.true_poses is not None:
         return score_files.place_results(
             folder, recorded.truth, recorded.true_poses, with_points=True
