@@ -98,13 +98,28 @@ def _write_settings(folder: Path, settings: Sequence[str]) -> Path:
 
 
 def last_words(results: Path, name: str) -> str:
-    """Return the last line of the log of the stage that ended a floor's run; "" if none did."""
+    """Return the last line of the log of the stage that ended a floor's run; "" if none did.
+
+    Where a stage before the plan fails, that of an earlier run is still there, and is not meant.
+    """
     missing = [t for t in _TABLES if not (results / name / f"plan/{t}.parquet").is_file()]
-    if not missing:
+    logs = sorted((results.parent / "logs" / name).glob("*.log"), key=_changed_ns)
+    failed = [log for log in logs if not _has_ended_well(log, results.parent / "benchmarks" / name)]
+    if not missing and not failed:
         return ""
-    logs = sorted((results.parent / "logs" / name).glob("*.log"), key=lambda p: p.stat().st_mtime)
-    lines = logs[-1].read_text(errors="replace").strip().splitlines() if logs else []
-    return f"{logs[-1].stem}: {lines[-1]}" if lines else "no stage has run"
+    told = (failed or logs)[-1:]
+    lines = [line for log in told for line in log.read_text(errors="replace").splitlines() if line]
+    return f"{told[0].stem}: {lines[-1]}" if lines else "no stage has run"
+
+
+def _has_ended_well(log: Path, costs: Path) -> bool:
+    """Return whether what a stage took was written after its log: only of those that end well."""
+    file = costs / f"{log.stem}.tsv"
+    return file.is_file() and _changed_ns(file) >= _changed_ns(log)
+
+
+def _changed_ns(file: Path) -> int:
+    return file.stat().st_mtime_ns
 
 
 def stage_costs(results: Path, name: str) -> dict[str, float]:
