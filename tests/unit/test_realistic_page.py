@@ -210,6 +210,14 @@ class TestChanges:
         assert "reporting: 1 floors\n  wall_correctness_010: 0.2500 -> 0.2000" in told
         assert "room_iou" not in told
 
+    def test_times_that_differ_as_they_do_from_run_to_run_are_not_told(self, tmp_path, capsys):
+        old, new = (
+            ([measured("a", 0.5, total_cpu_s=10.0, assemble_plan_mb=mb)], {}) for mb in (100, 150)
+        )
+        new[0][0]["total_cpu_s"] = 10.5
+        told = self.compare(tmp_path, capsys, old, new)
+        assert "total_cpu_s" not in told and "assemble_plan_mb: 100.0000 -> 150.0000" in told
+
     def test_a_plan_that_is_lost_is_told_and_changes_no_mean(self, tmp_path, capsys):
         old = [measured("a", 0.5), measured("b", 1.0)]
         new = [measured("a", 0.5), measured("b", np.nan, "no scan is kept")]

@@ -14,6 +14,8 @@ from scanplan.types import Array, BoolArray
 
 _NEAR_M = 0.15  # wider than faces of one wall err, narrower than a wall: one element in two plans
 _LEAST = 5e-4  # of a mean that is printed as changed: the noise of the third digit
+_COSTS = ("_s", "_mb")
+_LEAST_COST = 0.1  # of seconds and memory, which differ from run to run
 _MOST_SHOWN = 12  # floors of a list; the tables have all
 
 
@@ -43,7 +45,7 @@ def compare(before: Path, after: Path) -> None:
     for healed, words in ((False, "worse"), (True, "better")):
         floors = Counter(c.floor for c in changes if c.healed is healed)
         listed = ", ".join(f"{floor} {n}" for floor, n in floors.most_common(_MOST_SHOWN))
-        print(f"{words} on {len(floors)} floors: {listed}")
+        print(f"{words} on {len(floors)} floors: {listed or 'none'}")
 
 
 def _compare_measures(before: Path, after: Path) -> None:
@@ -64,7 +66,8 @@ def _compare_measures(before: Path, after: Path) -> None:
             # means of other floors tell nothing of a change
             known = rows[old.loc[rows, name].notna() & new.loc[rows, name].notna()]
             a, b = old.loc[known, name].mean(), new.loc[known, name].mean()
-            if abs(a - b) > _LEAST:
+            least = _LEAST_COST * a if name.endswith(_COSTS) else _LEAST
+            if abs(a - b) > least:
                 print(f"  {name}: {a:.4f} -> {b:.4f} ({len(known)} floors)")
 
 
