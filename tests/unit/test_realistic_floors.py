@@ -3,13 +3,14 @@
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
 import catalogue
-from realistic import floors, plans
+from realistic import floors, plans, recordings
 
 
 def names(chosen):
@@ -85,6 +86,9 @@ def test_without_the_recordings_real_floors_are_left_out_and_that_is_said(tmp_pa
     assert "no real floor under" in capsys.readouterr().out
 
 
+PLAN = ("plan/segments", "plan/rooms", "plan/confidence")
+
+
 class TestPlans:
     """Files as the workflow leaves them."""
 
@@ -100,8 +104,8 @@ class TestPlans:
             os.utime(path, (60 * minute, 60 * minute))
 
     def tables(self, folder):
-        for table in ("rooms", "confidence"):
-            path = folder / f"results/one/plan/{table}.parquet"
+        for table in ("poses", "registration", "scans", *PLAN):
+            path = folder / f"results/one/{table}.parquet"
             path.parent.mkdir(parents=True, exist_ok=True)
             path.touch()
 
@@ -126,9 +130,47 @@ class TestPlans:
         assert self.words(tmp_path) == "register_scans: no scan is kept"
 
     def test_a_floor_that_nothing_ran_of_says_so(self, tmp_path):
-        assert self.words(tmp_path) == "no stage has run"
+        assert self.words(tmp_path) == "no stage says why; see workflow.log"
         self.log(tmp_path, "interpolate_poses", "\n", 1, well="")
-        assert self.words(tmp_path) == "no stage has run"
+        assert self.words(tmp_path) == "interpolate_poses: no stage says why; see workflow.log"
+
+    @pytest.mark.parametrize("table", ["registration", *PLAN])
+    def test_a_plan_is_none_where_what_it_is_made_of_is_gone(self, tmp_path, table):
+        self.tables(tmp_path)
+        self.log(tmp_path, "validate_plan", "done\n", 1)
+        (tmp_path / f"results/one/{table}.parquet").unlink()
+        assert self.words(tmp_path) == "no stage says why; see workflow.log"
+
+    def run(self, folder, monkeypatch, *, code, failed):
+        """Make plans by a workflow that ends as said, on a floor that an earlier run has made."""
+        self.tables(folder)
+        self.log(folder, "validate_plan", "done\n", 1)
+
+        def run(command, *, stdout, **_):
+            stdout.write("first words\nlast words\n")
+            stdout.flush()
+            if failed:
+                (folder / "logs/one/register_scans.log").write_text("no scan is kept\n")
+            return SimpleNamespace(args=command, returncode=code)
+
+        monkeypatch.setattr(plans.subprocess, "run", run)
+        monkeypatch.setattr(plans.guard, "check_out", lambda *_: folder)
+        recorded = recordings.Recorded(folder / "recorded", folder / "truth.geojson", None)
+        return plans.make_plans(folder, "HEAD", folder / "bench", {"one": recorded})
+
+    def test_a_workflow_that_begins_no_stage_ends_the_run_with_its_last_words(
+        self, tmp_path, monkeypatch
+    ):
+        with pytest.raises(SystemExit, match="before its stages: last words"):
+            self.run(tmp_path, monkeypatch, code=1, failed=False)
+
+    def test_a_stage_that_fails_ends_its_floor_alone(self, tmp_path, monkeypatch):
+        results = self.run(tmp_path, monkeypatch, code=1, failed=True)
+        assert plans.last_words(results, "one") == "register_scans: no scan is kept"
+
+    def test_a_workflow_that_ends_well_leaves_nothing_to_say(self, tmp_path, monkeypatch):
+        results = self.run(tmp_path, monkeypatch, code=0, failed=False)
+        assert plans.last_words(results, "one") == ""
 
     def test_a_stage_costs_what_the_workflow_measured(self, tmp_path):
         self.log(tmp_path, "assemble_plan", "", 1)
