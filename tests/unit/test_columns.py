@@ -69,6 +69,13 @@ def test_a_strip_of_one_side_is_none():
     assert tell(box(2.8, 1.8, 3.2, 1.82)).kind == PIECE
 
 
+def test_a_side_that_one_return_shows_of_many_is_where_that_lies():
+    heights_m = np.linspace(0.3, 2.4, 39)
+    post = np.column_stack([np.full(39, 3.2), np.full(39, 2.2), heights_m])
+    points = np.concatenate([[(2.8, 1.8, 1.0)], post])
+    assert tell(box(2.8, 1.8, 3.2, 2.2), points).kind == PIECE
+
+
 def test_two_scans_may_both_have_something_above():
     assert tell(box(2.8, 1.8, 3.2, 2.2), sensors=SENSORS[:2]).kind == PIECE
 

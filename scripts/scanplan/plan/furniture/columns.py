@@ -165,11 +165,15 @@ def _fit_rectangle(xy_m: FloatArray) -> Polygon:
     own_m = _turned(xy_m, turn_rad)
     low_m, high_m = np.percentile(own_m, share, axis=0)
     bounds_m = [
-        np.median(own_m[np.abs(own_m[:, axis] - end_m[axis]) <= NOISE_M, axis])
-        for end_m in (low_m, high_m)
-        for axis in (0, 1)
+        _side_m(own_m[:, axis], end_m[axis]) for end_m in (low_m, high_m) for axis in (0, 1)
     ]
     return affinity.rotate(shapely.box(*bounds_m), turn_rad, origin=(0, 0), use_radians=True)
+
+
+def _side_m(along_m: FloatArray, end_m: float) -> float:
+    """Return the middle of the places (n,) at an end; the end itself where it lies between two."""
+    near_m = along_m[np.abs(along_m - end_m) <= NOISE_M]
+    return float(np.median(near_m)) if len(near_m) else float(end_m)
 
 
 def _turned(xy_m: FloatArray, turn_rad: float) -> FloatArray:
