@@ -39,6 +39,8 @@ COUNTS = {
     "explained": "explained",
 }
 """Measures of a plan without one: nothing in them says what is right."""
+NUMBERS = ("rooms_above_08", "leaves_as_wall")
+"""Those that are no shares: one more or less is none to hold against a share."""
 LESS_IS_BETTER = ("leaves_as_wall", "thickness_off")
 
 

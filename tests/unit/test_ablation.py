@@ -98,6 +98,14 @@ def test_a_row_says_what_changes_in_the_mean_and_at_worst():
     )
 
 
+def test_the_worst_is_a_share_as_one_room_more_is_none_to_compare_it_with():
+    before = {"room_iou": 0.9, "rooms_above_08": 5.0, "thickness_off": 0.1}
+    after = {"room_iou": 0.85, "rooms_above_08": 4.0, "thickness_off": 0.2}
+    found = {"one": plans(("a", before), ("b", after), ("a", before))}
+    row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, found)
+    assert row["worst"] == "thickness off -0.100 (one)" and row["rooms_above_08"] == -1
+
+
 def test_a_plan_that_cannot_be_made_without_a_rule_is_said_to_be_none():
     found = {
         "one": plans(("a", {"doors_driven_recall": 0.5}), ("none: ValueError()", {}), ("a", {}))
