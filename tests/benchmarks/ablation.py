@@ -17,11 +17,14 @@ from typing import Any
 
 import ablation_scores
 import ablation_table
+import catalogue
 from ablation_rules import RULES
 from ablation_switches import Rule, switched_off
+from realistic.floors import Floor, is_named
 
 import assemble_plan
 import extract_chosen_walls
+from scanplan.lab.evaluation.scores import score_files
 from scanplan.plan import planning
 from scanplan.project import code_files, dataset_files, stage_settings
 from scanplan.project.settings import merge_settings, read_own_layers
@@ -37,6 +40,7 @@ BASES = {name: _ANEW if rule.extracts else BASE for name, rule in RULES.items()}
 _PLACES = ("code/results", "results", ".")
 _PROCESSES = 2
 _SCRIPTS = Path(assemble_plan.__file__).parent
+_OWN = Path(__file__).parent
 _OF_SURVEY = ("registration.parquet", "plan/segments.parquet", "poses.parquet")
 
 
@@ -48,7 +52,8 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     folder : Path
         As a bench made it: with results of the workflow, or below `results` or `code/results`.
     names : sequence of str
-        Datasets, and rules: all that are finished, and all that there are, where none is named.
+        Rules, and datasets, or halves, kinds and `subset` of the realistic bench's floors. Where
+        none is named, all rules; and all that are finished but what is only ever reported on.
     settings : dict
         Default settings.
     """
@@ -56,15 +61,37 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     finished = sorted(path.parents[1] for path in results.glob("*/plan/segments.parquet"))
     rules = [name for name in RULES if name in names] or list(RULES)
     wanted = set(names) - set(rules)
-    drives = [path for path in finished if not wanted or path.name in wanted]
-    if unknown := wanted - {path.name for path in finished}:
+    floors = {path: find_floor(path) for path in finished}
+    unknown = [w for w in wanted if not any(is_named(floor, w) for floor in floors.values())]
+    if unknown:
         sys.exit(f"ablate: neither a rule nor finished in {results}: {', '.join(sorted(unknown))}")
+    drives = [path for path, floor in floors.items() if _is_wanted(floor, wanted)]
+    if not drives:
+        sys.exit(f"ablate: nothing to tune on is finished in {results}; name what to measure")
     kept = folder / "ablation"
     jobs = [(path, kept / path.name, rules, settings) for path in drives]
-    with workers.open_pool(min(_PROCESSES, len(jobs) or 1)) as run:
+    with workers.open_pool(min(_PROCESSES, len(jobs))) as run:
         found = dict(zip([path.name for path in drives], run(ablate, jobs), strict=True))
     for kind, of_kind in _by_kind(drives, found).items():
         ablation_table.report(kind, of_kind, {name: RULES[name] for name in rules}, BASES, kept)
+
+
+def find_floor(results: Path) -> Floor:
+    """Return what floor results are of; one that the realistic bench has not is of no half."""
+    name = results.name
+    for drive in catalogue.list_drives():
+        if drive.name == name:
+            return Floor(name, drive.kind, drive.sensor, drive.half, drive=drive)
+    recorded = ablation_scores.find_truth(results)
+    is_real = recorded is not None and recorded.true_poses is None
+    return Floor(name, "", "", "real" if is_real else "")
+
+
+def _is_wanted(floor: Floor, words: Iterable[str]) -> bool:
+    named = list(words)
+    if named:
+        return any(is_named(floor, word) for word in named)
+    return floor.half in ("tuning", "")
 
 
 def ablate(
@@ -167,6 +194,8 @@ def _survey_parts(results: Path, settings: Settings) -> Iterable[bytes | str]:
     """Yield what tells the inputs of a plan apart."""
     for name in (*_OF_SURVEY, f"selection/{settings['plan']['method']}.parquet"):
         yield (results / name).read_bytes()
+    if recorded := ablation_scores.find_truth(results):
+        yield recorded.truth.read_bytes()
     # the points themselves are gigabytes, and the poses are made of them
     yield str((results / "scans.parquet").stat().st_size)
 
@@ -174,10 +203,10 @@ def _survey_parts(results: Path, settings: Settings) -> Iterable[bytes | str]:
 @cache
 def code_digest() -> str:
     """Return what names the code that a plan is made and measured with, and the rules."""
-    stages = ("assemble_plan", "extract_chosen_walls", "evaluate_plan", "validate_plan")
-    scripts = [_SCRIPTS / f"{stage}.py" for stage in stages]
+    stages = ("assemble_plan", "extract_chosen_walls", "validate_plan")
+    scripts = [*(_SCRIPTS / f"{stage}.py" for stage in stages), Path(score_files.__file__)]
     helpers = {file for script in scripts for file in (script, *code_files.list_helpers(script))}
-    own = Path(__file__).parent.glob("ablation_*.py")
+    own = [*_OWN.glob("ablation_*.py"), _OWN / "realistic/scoring.py"]
     return _digest(file.read_bytes() for file in (*sorted(helpers), *sorted(own)))
 
 
@@ -198,12 +227,16 @@ def _read_kept(file: Path, digest: str) -> dict[str, Any] | None:
 def _by_kind(
     drives: Iterable[Path], found: dict[str, dict[str, dict[str, Any]]]
 ) -> dict[str, dict[str, dict[str, dict[str, Any]]]]:
-    """Return what was found by kind of survey: rules that heights decide are none in the plane."""
+    """Return what was found by kind of survey: rules that heights decide are none in the plane.
+
+    What may be tuned on and what is only reported on are apart.
+    """
     kinds: dict[str, dict[str, dict[str, dict[str, Any]]]] = {}
     for drive in drives:
         planar = "planar" if tables.ScanStore(drive / "scans.parquet").planar else "in space"
-        is_measured = (drive / "survey/truth.geojson").exists()
-        kind = f"{planar}, {'measured' if is_measured else 'without a truth'}"
+        is_measured = ablation_scores.find_truth(drive) is not None
+        half = find_floor(drive).half or ("measured" if is_measured else "without a truth")
+        kind = f"{planar}, {half}"
         kinds.setdefault(kind, {})[drive.name] = found[drive.name]
     return kinds
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from ablation_scores import COUNTS, HEADLINES, LESS_IS_BETTER
+from ablation_scores import COUNTS, HEADLINES, LESS_IS_BETTER, NUMBERS
 from ablation_switches import Rule
 
 import scanplan
@@ -127,9 +127,9 @@ def _count_lines(place: str) -> int:
 
 
 def _list_gains(deltas: Mapping[str, Mapping[str, float]]) -> Iterator[tuple[float, str, str]]:
-    """Yield by how much each measure of each drive is better, as more is better of all."""
+    """Yield by how much each share of each drive is better, as more is better of all."""
     for measure, of in deltas.items():
-        if measure in HEADLINES:
+        if measure in HEADLINES and measure not in NUMBERS:
             sign = -1 if measure in LESS_IS_BETTER else 1
             yield from ((sign * delta, HEADLINES[measure], drive) for drive, delta in of.items())
 

@@ -6,13 +6,13 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py guard REVISION FOLDER [SURVEY ...]
        run.py table FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
-       run.py ablate FOLDER [SURVEY | RULE ...]
+       run.py ablate FOLDER [SURVEY | HALF | KIND | subset | RULE ...]
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
-       run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR ...]
+       run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR | KEY=VALUE ...]
        run.py compare_realistic SCORES SCORES
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
@@ -31,7 +31,8 @@ fell.
 
 `ablate` makes the plans of surveys that a bench has finished in FOLDER again, without one rule of
 the plan at a time, and prints what each rule is worth: two drives at once, a few seconds a rule.
-Surveys and rules may be named, as in ablate FOLDER intel "narrow places".
+Surveys and rules may be named, as in ablate FOLDER intel "narrow places"; else what is only ever
+reported on is left out.
 
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
@@ -39,7 +40,8 @@ reliability diagram in that folder.
 
 `realistic` makes the plans of 84 drives through 42 buildings drawn from seeds, and of real floors
 with a truth, by the code of a commit, and scores them in the terms of the field: tables of measures
-and elements, and a page with a picture of every floor, in FOLDER/scores/COMMIT. Recordings are
+and elements, and a page with a picture of every floor, in FOLDER/scores/COMMIT, or COMMIT+WORDS
+where floors are named: HALF is tuning, reporting or real, subset twelve drives. Recordings are
 simulated once and kept. Half of the kinds of buildings are for tuning, the others are only reported
 on. Words with an equals sign are settings that the plans are made with, as
 advanced.plan.surfaces=labels. `compare_realistic` says what changed between two such folders,

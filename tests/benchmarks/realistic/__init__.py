@@ -12,7 +12,8 @@ import guard
 from realistic import comparing, floors, page, plans, recordings, scoring, summary
 
 SCORES = "scores"
-"""Folder of the tables and the page of a run, one below it for each commit."""
+"""Folder of the tables and pages of runs, one below it by commit and words."""
+_LONGEST = 200  # of a name that any file system takes
 
 
 def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[str]) -> None:
@@ -38,8 +39,8 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
     recorded = recordings.record_floors(chosen, folder)
     results = plans.make_plans(project, revision, folder, recorded, settings)
     measures, elements = scoring.score_floors(chosen, recorded, results)
-    name = "+".join([guard.name_commit(project, revision)[:12], *settings])
-    home = folder / SCORES / name
+    title = "+".join([guard.name_commit(project, revision)[:12], *words])
+    home = folder / SCORES / title[:_LONGEST]
     home.mkdir(parents=True, exist_ok=True)
     for name, table in (("measures", measures), ("elements", elements)):
         table.to_parquet(home / f"{name}.parquet", index=False)
@@ -49,7 +50,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
         floor.name: scoring.read_true_features(recorded[floor.name], _drawing(floor, folder))
         for floor in chosen
     }
-    page.write_page(home / "index.html", f"Plans of {name}", measures, elements, truths)
+    page.write_page(home / "index.html", f"Plans of {title}", measures, elements, truths)
     summary.print_summary(measures)
     print(f"realistic: {home / 'index.html'}", flush=True)
 

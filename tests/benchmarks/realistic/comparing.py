@@ -13,6 +13,9 @@ from scanplan.lab.evaluation.scores import score
 from scanplan.types import Array, BoolArray
 
 _NEAR_M = 0.15  # wider than faces of one wall err, narrower than a wall: one element in two plans
+_LEAST = 5e-4  # of a mean that is printed as changed: the noise of the third digit
+_COSTS = ("_s", "_mb")
+_LEAST_COST = 0.1  # of seconds and memory, which differ from run to run
 _MOST_SHOWN = 12  # floors of a list; the tables have all
 
 
@@ -42,7 +45,7 @@ def compare(before: Path, after: Path) -> None:
     for healed, words in ((False, "worse"), (True, "better")):
         floors = Counter(c.floor for c in changes if c.healed is healed)
         listed = ", ".join(f"{floor} {n}" for floor, n in floors.most_common(_MOST_SHOWN))
-        print(f"{words} on {len(floors)} floors: {listed}")
+        print(f"{words} on {len(floors)} floors: {listed or 'none'}")
 
 
 def _compare_measures(before: Path, after: Path) -> None:
@@ -51,14 +54,21 @@ def _compare_measures(before: Path, after: Path) -> None:
         for folder in (before, after)
     )
     both = old.index.intersection(new.index)
+    for words, one, other in (("lost", old, new), ("new", new, old)):
+        planned = both[(one.loc[both, "failed"] == "") & (other.loc[both, "failed"] != "")]
+        if len(planned):
+            print(f"plans {words}: {', '.join(planned)}")
     names = [c for c in new.select_dtypes("number").columns if c in old.columns]
     for half in dict.fromkeys(new.loc[both, "half"]):
         rows = new.index[(new["half"] == half) & new.index.isin(both)]
         print(f"{half}: {len(rows)} floors")
         for name in names:
-            a, b = old.loc[rows, name].mean(), new.loc[rows, name].mean()
-            if abs(a - b) > 5e-4:
-                print(f"  {name}: {a:.4f} -> {b:.4f}")
+            # means of other floors tell nothing of a change
+            known = rows[old.loc[rows, name].notna() & new.loc[rows, name].notna()]
+            a, b = old.loc[known, name].mean(), new.loc[known, name].mean()
+            least = _LEAST_COST * a if name.endswith(_COSTS) else _LEAST
+            if abs(a - b) > least:
+                print(f"  {name}: {a:.4f} -> {b:.4f} ({len(known)} floors)")
 
 
 def _find_changes(before: Path, after: Path) -> Iterator[Change]:

@@ -1,7 +1,7 @@
 """The floors of the bench: simulated drives of the catalogue, and real recordings with a truth."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,7 +43,7 @@ class Floor:
 def list_floors(data: Path) -> list[Floor]:
     """Return all floors, those of the catalogue first; real ones as far as `data` has them."""
     drives = [Floor(d.name, d.kind, d.sensor, d.half, drive=d) for d in catalogue.list_drives()]
-    return [*drives, *_list_maps(data), *_list_drawn(data)]
+    return [*drives, *_list_real(data)]
 
 
 def choose_floors(data: Path, words: Sequence[str]) -> list[Floor]:
@@ -54,35 +54,32 @@ def choose_floors(data: Path, words: Sequence[str]) -> list[Floor]:
     floors = list_floors(data)
     if not any(floor.half == "real" for floor in floors):
         print(f"realistic: no real floor under {data}, so none is measured", flush=True)
-    unknown = [word for word in words if not any(_is_named(floor, word) for floor in floors)]
+    unknown = [word for word in words if not any(is_named(floor, word) for floor in floors)]
     if unknown:
         kinds = ", ".join(dict.fromkeys(floor.kind for floor in floors))
         sys.exit(
             f"realistic: no floor {', '.join(unknown)}; name halves ({', '.join(HALVES)}), subset,"
             f" kinds ({kinds}) or floors"
         )
-    return [f for f in floors if not words or any(_is_named(f, word) for word in words)]
+    return [f for f in floors if not words or any(is_named(f, word) for word in words)]
 
 
-def _is_named(floor: Floor, word: str) -> bool:
+def is_named(floor: Floor, word: str) -> bool:
+    """Return whether a word names a floor: its own, its kind's or its half's, or `subset`."""
     return word in (floor.name, floor.kind, floor.half) or (
         word == "subset" and floor.name in catalogue.SUBSET
     )
 
 
-def _list_maps(data: Path) -> list[Floor]:
-    truths = sorted((data / "maps").glob("*/truth.npz"))
-    return [
-        Floor(truth.parent.name, "map", "", "real", recording=truth.parent, truth=truth)
-        for truth in truths
-    ]
+def find_real_truth(recording: Path) -> Path | None:
+    """Return the truth of a real recording: of a map, or drawn by hand, here or beside it."""
+    drawn = f"{recording.name}.geojson"
+    places = (recording / "truth.npz", _DRAWN_BY_HAND / drawn, recording.parent / "truth" / drawn)
+    return next((place for place in places if place.is_file()), None)
 
 
-def _list_drawn(data: Path) -> list[Floor]:
-    """Return the logs whose rooms and walls were drawn by hand, here or beside the recordings."""
-    truths = [*(data / "truth").glob("*.geojson"), *_DRAWN_BY_HAND.glob("*.geojson")]
-    return [
-        Floor(truth.stem, "log", "", "real", recording=data / truth.stem, truth=truth)
-        for truth in sorted(truths, key=lambda path: path.stem)
-        if (data / truth.stem).is_dir()
-    ]
+def _list_real(data: Path) -> Iterator[Floor]:
+    for kind, folder in (("map", data / "maps"), ("log", data)):
+        for recording in sorted(folder.glob("*/")):
+            if truth := find_real_truth(recording):
+                yield Floor(recording.name, kind, "", "real", recording=recording, truth=truth)

@@ -37,6 +37,9 @@ HEADLINES = {
 }
 """Measure to its heading; see `scanplan.lab.evaluation.scores`."""
 _WHOLE = ("face", "wall")
+_BAR_PX = 300  # of all there is
+_MEASURED = {"stretch": "wall_drawn_m", "thickness": "thickness_known_m"}
+"""Table whose rows are all wrong to the measure that says how many metres there are."""
 _STYLE = """
 body{font:14px/1.45 system-ui,sans-serif;margin:1.5rem;color:#222}
 table{border-collapse:collapse;margin:.6rem 0}
@@ -88,7 +91,7 @@ def write_page(
         *_list_failures(measures),
         "<h2>Floors, the worst first</h2>",
         f"<p class=key>{_key()}</p>",
-        '<p>show only <input id=filter oninput=show() placeholder="tuning museum planar"></p>',
+        '<p>show only <input id=filter oninput=show() placeholder="tuning museum laser"></p>',
         "<div class=floors>",
         *_draw_floors(measures, elements, truths),
         "</div>",
@@ -109,7 +112,11 @@ def rank_floors(measures: "pd.DataFrame") -> "pd.DataFrame":
 
 
 def _list_errors(elements: "pd.DataFrame", measures: "pd.DataFrame") -> Iterator[str]:
-    """Yield a table a half: kinds of errors, by how much of all there is they are."""
+    """Yield a table a half: kinds of errors, by how much of all there is they are.
+
+    Of elements by number; of stretches, and those of a wrong thickness, by length, of all wall that
+    is drawn and of all whose thickness is known.
+    """
     halves = measures.set_index("floor")["half"]
     of_half = elements["floor"].map(halves)
     for half in dict.fromkeys(measures["half"]):
@@ -119,24 +126,30 @@ def _list_errors(elements: "pd.DataFrame", measures: "pd.DataFrame") -> Iterator
         wrong = rows[rows["verdict"] != "right"]
         if wrong.empty:
             continue
-        whole = rows.groupby("table").size()
+        whole = rows.groupby("table").size().to_dict()
+        of = measures[measures["half"] == half]
+        whole |= {table: of[name].sum() for table, name in _MEASURED.items() if name in of}
         kinds = wrong.groupby(["table", "verdict"]).agg(
             n=("size", "size"),
             size=("size", "sum"),
             floors=("floor", "nunique"),
             flagged=("flagged", "mean"),
         )
-        kinds["share"] = [n / whole[table] for (table, _), n in kinds["n"].items()]
+        kinds["share"] = [
+            row["size" if table in _MEASURED else "n"] / whole[table]
+            for (table, _), row in kinds.iterrows()
+        ]
+        kinds["bar_px"] = _BAR_PX * kinds["share"].clip(upper=1)
         lines = [
             f"<tr><td>{table}: {verdict}</td><td>{row['n']:.0f}</td><td>{row['size']:.0f}</td>"
             f"<td>{row['share']:.0%}</td><td>{row['flagged']:.0%}</td><td>{row['floors']:.0f}</td>"
-            f'<td style="text-align:left"><i class=bar style="width:{300 * row["share"]:.0f}px;'
+            f'<td style="text-align:left"><i class=bar style="width:{row["bar_px"]:.0f}px;'
             f'background:{pictures.colour_of(str(verdict))}"></i></td></tr>'
             for (table, verdict), row in kinds.sort_values("share", ascending=False).iterrows()
         ]
         yield (
             f"<h3>{half}</h3><table><tr><th>error</th><th>elements</th><th>m or m2</th>"
-            "<th>of the kind's</th><th>flagged</th><th>floors</th><th></th></tr>"
+            "<th>of all</th><th>flagged</th><th>floors</th><th></th></tr>"
         )
         yield "".join(lines) + "</table>"
 

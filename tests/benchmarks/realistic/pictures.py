@@ -13,18 +13,22 @@ TrueFeature = tuple[str, BaseGeometry, Mapping[str, Any]]
 """Kind of a feature of the truth, its geometry in the truth's frame, and its properties."""
 COLOURS = {
     "leaf": "#e41a1c",
+    "wall": "#e41a1c",
     "furniture": "#ff7f00",
     "mirrored": "#984ea3",
+    "outside": "#984ea3",
     "shut_door": "#a65628",
     "off": "#f781bf",
     "bridge": "#00a0a0",
     "other": "#d0006f",
     "wrong_type": "#008000",
+    "merged": "#c49a00",
+    "part": "#7a9a00",
     "missed": "#1f60ff",
     "unknown": "#b0b0b0",
     "not_entered": "#b0b0b0",
 }
-"""Verdict to colour; what is right is dark."""
+"""Verdict to colour; what is right is dark. A `wall` is a leaf that is drawn as one."""
 _RIGHT = "#303030"
 _WIDTH_PX = 460  # of a picture on the page: two beside each other on a laptop
 _MARGIN_M = 0.7
@@ -59,7 +63,7 @@ def draw_floor(truth: Sequence[TrueFeature], elements: Mapping[str, Array]) -> s
     Returns
     -------
     str
-        An element `svg`, one unit a metre.
+        An element `svg` of a page, one unit a metre.
     """
     shapes: list[BaseGeometry] = list(shapely.from_wkb(np.asarray(elements["geometry"], object)))
     bounds = [g for kind, g, _ in truth if kind in ("room", "wall", "surface")]
@@ -68,7 +72,7 @@ def draw_floor(truth: Sequence[TrueFeature], elements: Mapping[str, Array]) -> s
     size = (high_x - low_x + 2 * _MARGIN_M, high_y - low_y + 2 * _MARGIN_M)
     body = [*_draw_truth(truth), *_draw_elements(elements, shapes)]
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{_WIDTH_PX}"'
+        f'<svg width="{_WIDTH_PX}"'
         f' viewBox="{box[0]:.2f} {box[1]:.2f} {size[0]:.2f} {size[1]:.2f}">'
         + "".join(body)
         + "</svg>"

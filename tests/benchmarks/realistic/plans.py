@@ -5,6 +5,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ import yaml
 from realistic.recordings import Recorded
 
 _TABLES = ("rooms", "confidence")
+_ON_THE_WAY = ("poses", "registration", "scans", "plan/segments")
+_NO_WORDS = "no stage says why; see workflow.log"
 _AT_ONCE = 24  # datasets in one run: every job of it parses all of them
 STAGES = (
     "interpolate_poses",
@@ -70,9 +73,11 @@ def _run_workflow(
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "all"]
     command += ["--keep-going", "--rerun-incomplete", "--config", f"dataset={given}"]
     command += ["--configfile", str(_write_settings(code.parent, settings))] if settings else []
-    with (code.parent / "workflow.log").open("a") as log:
+    started_ns = time.time_ns()
+    told = code.parent / "workflow.log"
+    with told.open("a") as log:
         # one that fails is told with its last words by `last_words`
-        subprocess.run(
+        done = subprocess.run(
             [*command, "--", *targets],
             cwd=code,
             env=environment,
@@ -80,6 +85,11 @@ def _run_workflow(
             stderr=subprocess.STDOUT,
             check=False,
         )
+    failed = [log for name in names for log in _list_failed(code / "results", name)]
+    if done.returncode and not any(_changed_ns(log) >= started_ns for log in failed):
+        # plans that are there are of an earlier run: other code, or other settings
+        lines = [line for line in told.read_text(errors="replace").splitlines() if line.strip()]
+        sys.exit(f"realistic: the workflow ended before its stages: {lines[-1]} (see {told})")
 
 
 def _write_settings(folder: Path, settings: Sequence[str]) -> Path:
@@ -98,13 +108,34 @@ def _write_settings(folder: Path, settings: Sequence[str]) -> Path:
 
 
 def last_words(results: Path, name: str) -> str:
-    """Return the last line of the log of the stage that ended a floor's run; "" if none did."""
-    missing = [t for t in _TABLES if not (results / name / f"plan/{t}.parquet").is_file()]
-    if not missing:
-        return ""
-    logs = sorted((results.parent / "logs" / name).glob("*.log"), key=lambda p: p.stat().st_mtime)
-    lines = logs[-1].read_text(errors="replace").strip().splitlines() if logs else []
-    return f"{logs[-1].stem}: {lines[-1]}" if lines else "no stage has run"
+    """Return the last line of the log of the stage that ended a floor's run; "" if none did.
+
+    Where a stage before the plan fails, that of an earlier run is still there, and is not meant.
+    """
+    failed = _list_failed(results, name)
+    if failed:
+        lines = [line for line in failed[-1].read_text(errors="replace").splitlines() if line]
+        return f"{failed[-1].stem}: {lines[-1] if lines else _NO_WORDS}"
+    needed = [*_ON_THE_WAY, *(f"plan/{table}" for table in _TABLES)]
+    is_whole = all((results / name / f"{table}.parquet").is_file() for table in needed)
+    return "" if is_whole else _NO_WORDS
+
+
+def _list_failed(results: Path, name: str) -> list[Path]:
+    """Return the logs of the stages of a floor that did not end well, the last one last."""
+    logs = sorted((results.parent / "logs" / name).glob("*.log"), key=_changed_ns)
+    costs = results.parent / "benchmarks" / name
+    return [log for log in logs if not _has_ended_well(log, costs)]
+
+
+def _has_ended_well(log: Path, costs: Path) -> bool:
+    """Return whether what a stage took was written after its log: only of those that end well."""
+    file = costs / f"{log.stem}.tsv"
+    return file.is_file() and _changed_ns(file) >= _changed_ns(log)
+
+
+def _changed_ns(file: Path) -> int:
+    return file.stat().st_mtime_ns
 
 
 def stage_costs(results: Path, name: str) -> dict[str, float]:

@@ -15,7 +15,8 @@ import shapely
 from realistic import peers, pictures, plans
 from realistic.floors import Floor
 from realistic.recordings import Recorded
-from scanplan.lab.evaluation.scores import score_files
+from scanplan.errors import StageError
+from scanplan.lab.evaluation.scores import score, score_files
 from scanplan.lab.evaluation.truth_file import parse_features
 
 _N_PROCESSES = 2  # of the machine that the bench is timed for
@@ -32,15 +33,15 @@ def score_floors(
         jobs = [pool.submit(_score, floor, recorded[floor.name], results) for floor in floors]
         done = [job.result() for job in jobs]
     rows = [row for row, _ in done]
-    parts = [
-        pd.DataFrame(elements).assign(floor=str(row["floor"]))
-        for row, elements in done
-        if elements is not None
-    ]
-    elements = pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
-    if len(elements):
-        elements["size"] = elements["length_m"].fillna(elements["area_m2"]).fillna(0.0)
-    return pd.DataFrame(rows), elements
+    return pd.DataFrame(rows), stack_floors({str(r["floor"]): of for r, of in done if of})
+
+
+def stack_floors(of_floors: Mapping[str, Mapping[str, Any]]) -> pd.DataFrame:
+    """Return the elements of floors as one table: also `floor`, and `size` in m or m2."""
+    none = pd.DataFrame(score.element_columns([])).assign(floor="")
+    parts = [pd.DataFrame(columns).assign(floor=name) for name, columns in of_floors.items()]
+    elements = pd.concat(parts, ignore_index=True) if parts else none
+    return elements.assign(size=elements["length_m"].fillna(elements["area_m2"]).fillna(0.0))
 
 
 def _score(
@@ -54,14 +55,25 @@ def _score(
     row["total_cpu_s"] = sum(v for k, v in costs.items() if k.endswith("_cpu_s") and v == v)
     if row["failed"]:
         return row, None
-    folder = results / floor.name
-    placed = _place(folder, recorded)
-    score = score_files.score_results(placed)
-    row |= score.measures | peers.measure_peers(placed)
-    return row, score.elements
+    try:
+        placed = place_floor(results / floor.name, recorded)
+        of_plan = score_files.score_results(placed)
+        row |= of_plan.measures | peers.measure_peers(placed)
+    except StageError as error:
+        # one floor must not end the run of all
+        return {**row, "failed": f"score: {error}"}, None
+    return row, of_plan.elements
 
 
-def _place(folder: Path, recorded: Recorded) -> score_files.Placed:
+def place_floor(folder: Path, recorded: Recorded) -> score_files.Placed:
+    """Place the results of a floor beside its truth, as its kind of truth asks for.
+
+    Parameters
+    ----------
+    folder : Path
+        results/<floor>.
+    recorded : Recorded
+    """
     if recorded.true_poses is not None:
         return score_files.place_results(
             folder, recorded.truth, recorded.true_poses, with_points=True
