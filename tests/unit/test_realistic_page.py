@@ -158,6 +158,19 @@ def test_figures_are_means_of_what_is_known_and_failures_are_named(capsys):
     assert "reporting: 1 floors, 0 without a plan" in told and "mean 0.250" in told
 
 
+def test_means_are_tables_by_half_kind_sensor_and_real_floor():
+    rows = [
+        {"floor": "a", "half": "tuning", "kind": "hall", "sensor": "laser", "room_iou": 0.5},
+        {"floor": "b", "half": "tuning", "kind": "attic", "sensor": "laser", "room_iou": 1.0},
+        {"floor": "c", "half": "real", "kind": "map", "sensor": "", "room_iou": np.nan},
+    ]
+    tables = summary.format_tables(pd.DataFrame(rows)).split("\n\n")
+    heads = [table.split(" ")[1] for table in tables]
+    assert heads == ["half", "kind", "sensor", "floor"]
+    assert "| tuning | 2 | .750 |" in tables[0] and "| real | 1 | - |" in tables[0]
+    assert "| tuning hall | 1 | .500 |" in tables[1] and "| laser | 2 | .750 |" in tables[2]
+
+
 class TestChanges:
     def compare(self, folder, capsys, old, new):
         """Compare two runs, each its rows of measures and elements by floor."""

@@ -51,6 +51,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
         for floor in chosen
     }
     page.write_page(home / "index.html", f"Plans of {title}", measures, elements, truths)
+    (home / "summary.md").write_text(summary.format_tables(measures), encoding="utf-8")
     summary.print_summary(measures)
     print(f"realistic: {home / 'index.html'}", flush=True)
 

@@ -24,3 +24,29 @@ def print_summary(measures: "pd.DataFrame") -> None:
                     f" most {known.max():.3f} ({len(known)} floors)",
                     flush=True,
                 )
+
+
+def format_tables(measures: "pd.DataFrame") -> str:
+    """Return Markdown tables of the headline measures: means by half, by kind, and real floors."""
+    drives = measures[measures["half"] != "real"]
+    real = measures[measures["half"] == "real"]
+    parts = [("half", measures, ["half"]), ("kind", drives, ["half", "kind"])]
+    parts += [("sensor", drives, ["sensor"]), ("floor", real, ["floor"])]
+    return "\n\n".join(_format_table(*part) for part in parts if len(part[1])) + "\n"
+
+
+def _format_table(head: str, measures: "pd.DataFrame", by: list[str]) -> str:
+    names = [n for n in page.HEADLINES if n in measures and measures[n].notna().any()]
+    heads = [head, "floors", *(page.HEADLINES[name] for name in names)]
+    lines = [f"| {' | '.join(heads)} |", "|---" * len(heads) + "|"]
+    for key, group in measures.groupby(by, sort=False):
+        cells = [" ".join(map(str, key)), str(len(group))]
+        cells += [_format_mean(group[name].mean()) for name in names]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _format_mean(value: float) -> str:
+    if value != value:
+        return "-"
+    return f"{value:.1f}" if abs(value) >= 10 else f"{value:.3f}".removeprefix("0")
