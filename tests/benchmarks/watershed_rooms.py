@@ -5,6 +5,8 @@ implementation, and analysis, ICRA 2016): what is farther from obstacles than ha
 falls into regions, each grown over the free cells around it. Small obstacles part none.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 from scipy import ndimage
@@ -62,16 +64,28 @@ def _seed_regions(is_seed: BoolArray, least_cells: float) -> IntArray:
 
 
 def _grow(seeds: IntArray, far: FloatArray) -> IntArray:
-    """Return regions grown over free cells, from those far from obstacles down."""
-    region = seeds
-    for level in range(int(far.max()), -1, -1):
-        while True:
-            beside = ndimage.maximum_filter(region, size=3)
-            is_new = (far > level) & (region == 0) & (beside > 0)
-            if not is_new.any():
-                break
-            region = np.where(is_new, beside, region)
-    return region
+    """Return regions grown over free cells, from those far from obstacles down.
+
+    Each cell is looked at when its level comes, and again when one beside it is taken.
+    """
+    region, level = (
+        np.pad(seeds, 1).ravel(),
+        np.pad(np.ceil(far).astype(np.int64) - 1, 1, constant_values=-1).ravel(),
+    )
+    width = seeds.shape[1] + 2
+    around = np.array([dy * width + dx for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
+    order = np.argsort(-level, kind="stable")
+    begins = np.searchsorted(-level[order], -np.arange(int(far.max()), -2, -1))
+    for at, (begin, end) in zip(range(int(far.max()), -1, -1), pairwise(begins), strict=True):
+        cells = order[begin:end]
+        while len(cells):
+            cells = cells[region[cells] == 0]
+            beside = region[cells[:, None] + around].max(axis=1, initial=0)
+            taken = cells[beside > 0]
+            region[taken] = beside[beside > 0]
+            near = np.unique(taken[:, None] + around)
+            cells = near[(region[near] == 0) & (level[near] >= at)]
+    return region.reshape(-1, width)[1:-1, 1:-1]
 
 
 def _count(seeds: IntArray) -> int:

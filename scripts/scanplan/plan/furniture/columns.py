@@ -164,10 +164,11 @@ def _fit_rectangle(xy_m: FloatArray) -> Polygon:
     turn_rad = float(turns_rad[np.argmin(np.prod(extents_m, axis=1))])
     own_m = _turned(xy_m, turn_rad)
     low_m, high_m = np.percentile(own_m, share, axis=0)
-    bounds_m = [
+    low_x_m, low_y_m, high_x_m, high_y_m = (
         _side_m(own_m[:, axis], end_m[axis]) for end_m in (low_m, high_m) for axis in (0, 1)
-    ]
-    return affinity.rotate(shapely.box(*bounds_m), turn_rad, origin=(0, 0), use_radians=True)
+    )
+    box = shapely.box(low_x_m, low_y_m, high_x_m, high_y_m)
+    return affinity.rotate(box, turn_rad, origin=(0, 0), use_radians=True)
 
 
 def _side_m(along_m: FloatArray, end_m: float) -> float:
