@@ -4,7 +4,7 @@ The extractors by name stand here and nowhere else. The thesis's own go without 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from scanplan.extraction import (
@@ -67,8 +67,12 @@ EXTRACTORS: dict[str, Extractor] = {
 
 
 def select_settings(kind: type[_Class], settings: Settings) -> _Class:
-    """Make a dataclass of settings from the values it has fields for, among more of them."""
-    return kind(**{field.name: settings[field.name] for field in fields(kind)})
+    """Make a dataclass of settings from the values it has fields for, among more of them.
+
+    A field with a default may be missing.
+    """
+    wanted = [f.name for f in fields(kind) if f.default is MISSING or f.name in settings]
+    return kind(**{name: settings[name] for name in wanted})
 
 
 def select_limits(extractor: Extractor, settings: Settings) -> furniture.FurnitureLimits | None:
