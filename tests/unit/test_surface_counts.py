@@ -165,12 +165,21 @@ class TestLost:
     SENSORS = ((2.0, 2.0, 0.0), (2.8, 1.5, 0.0), (0.2, 3.8, 0.0))
 
     @pytest.fixture(scope="class")
-    def counts(self):
+    def looked(self):
         sensors = {i: np.array(s) for i, s in enumerate(self.SENSORS)}
         room = np.array(self.ROOM, float)
         scans = [(i, toy_rooms.laser(sensors[i], room, noise_m=0.002)) for i in sensors]
-        looked = ray_set.gather_rays(scans, sensors, planar=True)
+        return ray_set.gather_rays(scans, sensors, planar=True)
+
+    @pytest.fixture(scope="class")
+    def counts(self, looked):
         return count_ends(looked, NORTH, 0.0, 4.0, [Side(NORTH, 0.24, ALL)])
+
+    def test_of_a_tilted_sensor_nothing_is_known_to_be_lost(self, looked, counts):
+        own = [Side(NORTH, 0.24, ALL)]
+        tilted = count_ends(looked, NORTH, 0.0, 4.0, own, np.zeros(3, bool)).ends
+        assert tilted[..., LOST].sum() == 0
+        np.testing.assert_array_equal(tilted[..., :LOST] > 0, counts.ends[..., :LOST] > 0)
 
     def test_rays_that_never_come_back_are_lost_where_they_were_sent(self, counts):
         lost = counts.ends[..., LOST].sum(axis=(1, 2))

@@ -95,7 +95,12 @@ class _Grid:
 
 
 def count_ends(
-    rays: RaySet, wall: Line, low_m: float, high_m: float, sides: Sequence[Side]
+    rays: RaySet,
+    wall: Line,
+    low_m: float,
+    high_m: float,
+    sides: Sequence[Side],
+    is_level: BoolArray | None = None,
 ) -> SurfaceCounts:
     """Count what rays say of a wall between two places along its line, from all its sides.
 
@@ -106,6 +111,9 @@ def count_ends(
         Along which columns are counted.
     low_m, high_m : float
     sides : sequence of Side
+    is_level : (s,) bool, optional
+        Which scans were taken with the sensor upright, all by default: how many rays others send
+        up or down changes with the direction, so that of them nothing is known to be lost.
     """
     n_columns = max(int(np.ceil((high_m - low_m) / COLUMN_M)), 1)
     grid = _Grid(wall, low_m, n_columns, 1 if rays.planar else len(ROWS_M) - 1)
@@ -113,7 +121,7 @@ def count_ends(
     is_only = not any(side.line.normal @ sides[0].line.normal < 0 for side in sides)
     total = np.zeros((n_columns, grid.n_rows, 2, N_ENDS))
     for side in sides:
-        total += _count_side(rays, grid, side, place, is_only=is_only)
+        total += _count_side(rays, grid, side, place, is_only=is_only, is_level=is_level)
     return SurfaceCounts(low_m, total)
 
 
@@ -124,7 +132,13 @@ def _group_places(sensors_m: FloatArray) -> IntArray:
 
 
 def _count_side(
-    rays: RaySet, grid: _Grid, side: Side, place: IntArray, *, is_only: bool
+    rays: RaySet,
+    grid: _Grid,
+    side: Side,
+    place: IntArray,
+    *,
+    is_only: bool,
+    is_level: BoolArray | None,
 ) -> FloatArray:
     span_m = np.sort(side.line.along_m(grid.wall.at(grid.ends_m)))
     face = cast_at_face(
@@ -140,7 +154,7 @@ def _count_side(
     cells = (place[face.scan[kept]], column[kept], row[kept])
     is_oblique = (~_is_square(rays, face)[kept]).astype(np.int64)
     ended = np.ravel_multi_index((*cells, is_oblique, end[kept]), shape)
-    lost, n_lost = _find_lost(rays, face, grid, side, float(span_m[0]), place, shape)
+    lost, n_lost = _find_lost(rays, face, grid, side, float(span_m[0]), place, shape, is_level)
     key, inverse = np.unique(np.concatenate([ended, lost]), return_inverse=True)
     counted = np.bincount(inverse, np.concatenate([np.ones(len(ended)), n_lost]), len(key))
     weight = counted.astype(float)  # of nothing numpy counts in whole numbers
@@ -196,6 +210,7 @@ def _find_lost(
     first_m: float,
     place: IntArray,
     shape: tuple[int, ...],
+    is_level: BoolArray | None,
 ) -> tuple[IntArray, FloatArray]:
     """Return the cells, as `shape` numbers them, that rays were lost at, and how many were."""
     keys: list[IntArray] = [np.empty(0, np.int64)]
@@ -207,6 +222,8 @@ def _find_lost(
         view, number, missing = _find_missing(sent)
         column = grid.columns_of(side.line, first_m + (number + 0.5) * COLUMN_M)
         ok = column >= 0
+        if is_level is not None:
+            ok &= is_level[face.views.scan[sent.view[view]]]
         view, number, missing, column = view[ok], number[ok], missing[ok], column[ok]
         of_place = place[face.views.scan[sent.view[view]]]
         for row in rows:
