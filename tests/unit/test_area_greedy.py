@@ -95,14 +95,14 @@ def test_what_lies_beside_a_common_edge_is_not_covered():
 @given(hull_sets())
 def test_areas_behave_as_areas_of_unions_do(polygons):
     result, area_m2 = area_greedy.order_by_area(polygons), shapely.area(polygons)
+    # what is smaller than the order's own tolerance counts for nothing, here and in a union not
+    assume(((area_m2 == 0) | (area_m2 > SMALLEST_M2)).all())
     assume(overlays_agree(polygons, result.order))
     assert sorted(result.order) == list(range(len(polygons)))
     assert (result.gain >= 0).all()
     assert (np.diff(result.gain) <= SMALLEST_M2).all()
-    # corners a nanometre apart count for what the order itself takes for nothing
-    united_m2 = shapely.union_all(polygons).area
-    assert result.covered[-1] == pytest.approx(united_m2, abs=len(polygons) * SMALLEST_M2)
-    assert area_m2.max() - SMALLEST_M2 <= result.covered[-1] <= area_m2.sum() + SMALLEST_M2
+    assert result.covered[-1] == pytest.approx(shapely.union_all(polygons).area, abs=1e-9)
+    assert area_m2.max() - 1e-9 <= result.covered[-1] <= area_m2.sum() + 1e-9
 
 
 def test_same_order_as_algorithm_1_on_a_walk():
