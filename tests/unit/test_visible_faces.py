@@ -90,6 +90,33 @@ class TestSeen:
         )
         assert (both[0] != both[1]).any()
 
+    def test_what_is_asked_for_is_seen_as_if_all_were(self):
+        rng = np.random.default_rng(8)
+        cells = face_cells.cut_faces(ROOM)
+        for place_m in rng.uniform(0.1, 3.9, (20, 2)):
+            everything = visible_faces.visible_cells(cells, NO_FACES, place_m, max_range_m=5.0)
+            # cells of all faces, of a few faces, and none
+            for asked in (rng.random(len(cells.face)) < 0.3, cells.face % 3 == 1, cells.face < 0):
+                found = visible_faces.visible_cells(
+                    cells, NO_FACES, place_m, max_range_m=5.0, asked=asked
+                )
+                np.testing.assert_array_equal(found, everything & asked)
+
+    def test_a_survey_sees_what_any_of_its_poses_sees(self):
+        rng = np.random.default_rng(5)
+        cells = face_cells.cut_faces(ROOM)
+        turned_rad = rng.uniform(0, 2 * np.pi, 40)
+        poses = np.tile(np.eye(4), (40, 1, 1))
+        poses[:, 0, 0] = poses[:, 1, 1] = np.cos(turned_rad)
+        poses[:, 1, 0] = np.sin(turned_rad)
+        poses[:, 0, 1] = -poses[:, 1, 0]
+        poses[:, :2, 3] = rng.uniform(0.1, 3.9, (40, 2))
+        view = visible_faces.SensorView(5.0, field_rad=1.0)
+        each = visible_faces.cells_seen_by_each(cells, NO_FACES, poses, view)
+        any_of_them = visible_faces.cells_seen_by_any(cells, NO_FACES, poses, view)
+        assert each[0].sum() < any_of_them.sum() < len(any_of_them)
+        np.testing.assert_array_equal(any_of_them, each.any(axis=0))
+
 
 class TestCells:
     CELLS = face_cells.cut_faces(np.array([[(0, 0), (0.05, 0)], [(1, 1), (1, 1.04)]], float))
@@ -122,11 +149,11 @@ def test_a_field_lies_to_either_side_of_forward():
     cells = face_cells.cut_faces(np.array([[(-1, 1), (1, 1)], [(-1, -1), (1, -1)]], float))
     forward_is_y = np.array([[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 5], [0, 0, 0, 1]], float)
     right, whole = (
-        visible_faces.cells_in_field(cells, forward_is_y, np.pi / 2),
-        visible_faces.cells_in_field(cells, forward_is_y, np.pi),
+        visible_faces.is_in_field(cells.middle_m, forward_is_y, np.pi / 2),
+        visible_faces.is_in_field(cells.middle_m, forward_is_y, np.pi),
     )
     assert right[:100].all() and whole[:100].all() and not right[100:].any()
-    assert not visible_faces.cells_in_field(cells, forward_is_y, np.pi / 4)[[0, 99]].any()
+    assert not visible_faces.is_in_field(cells.middle_m, forward_is_y, np.pi / 4)[[0, 99]].any()
 
 
 def test_a_way_is_thinned_by_distance():

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.lab.evaluation.face_cells import FaceCells
-from scanplan.types import Array, BoolArray, FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _SURVEY_STEP_M = 0.25  # a survey's view hardly changes over a step: fewer places are looked from
+_LEAPS = 16  # of a survey: its first views, far apart, leave few cells for all others to look for
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class _Sectors:
     edges_rad : (s,) float64
         Where sectors begin, rising; the last ends where the first begins.
     nearest : (s,) int
-        The nearest face of each sector, -1 where there is none.
+        The nearest face of each sector, -1 where there is none, or none is asked for.
     """
 
     ends_m: FloatArray
@@ -41,7 +42,12 @@ class _Sectors:
 
 
 def visible_cells(
-    cells: FaceCells, outer_m: FloatArray, position_m: FloatArray, *, max_range_m: float
+    cells: FaceCells,
+    outer_m: FloatArray,
+    position_m: FloatArray,
+    *,
+    max_range_m: float,
+    asked: BoolArray | None = None,
 ) -> BoolArray:
     """Return which cells can be seen from a place.
 
@@ -56,16 +62,21 @@ def visible_cells(
         Further faces that only occlude.
     position_m : (2,) float
     max_range_m : float
+    asked : (c,) bool, optional
+        Cells to look for; by default all.
 
     Returns
     -------
     (c,) bool
+        False where not asked.
     """
-    sectors = _part_view(np.concatenate([cells.faces_m, outer_m]), position_m)
+    sought = cells.face if asked is None else cells.face[asked]
+    sectors = _part_view(np.concatenate([cells.faces_m, outer_m]), position_m, sought)
     # only faces that are nearest somewhere have cells to look at
     is_candidate = np.zeros(len(sectors.ends_m), bool)
     is_candidate[sectors.nearest[sectors.nearest >= 0]] = True
-    candidates = np.flatnonzero(is_candidate[cells.face])
+    is_near = is_candidate[cells.face]
+    candidates = np.flatnonzero(is_near if asked is None else is_near & asked)
     offset_m = cells.middle_m[candidates] - position_m
     direction_rad = np.arctan2(offset_m[:, 1], offset_m[:, 0])
     sector = np.searchsorted(sectors.edges_rad, direction_rad, side="right") - 1
@@ -106,14 +117,19 @@ def visible_polygon(faces_m: FloatArray, position_m: FloatArray, *, open_m: floa
 
 
 def cells_seen_from(
-    cells: FaceCells, outer_m: FloatArray, world_from_sensor: FloatArray, view: SensorView
+    cells: FaceCells,
+    outer_m: FloatArray,
+    world_from_sensor: FloatArray,
+    view: SensorView,
+    asked: BoolArray | None = None,
 ) -> BoolArray:
     """Return which cells a sensor at a pose (4, 4) sees: (c,) bool; see `visible_cells`."""
-    position_m = world_from_sensor[:2, 3]
-    seen = visible_cells(cells, outer_m, position_m, max_range_m=view.max_range_m)
-    if _sees_all_around(view):
-        return seen
-    return seen & cells_in_field(cells, world_from_sensor, view.field_rad)
+    seen = visible_cells(
+        cells, outer_m, world_from_sensor[:2, 3], max_range_m=view.max_range_m, asked=asked
+    )
+    if not _sees_all_around(view):
+        seen[seen] = is_in_field(cells.middle_m[seen], world_from_sensor, view.field_rad)
+    return seen
 
 
 def cells_seen_by_each(
@@ -136,14 +152,16 @@ def cells_seen_by_any(
     if _sees_all_around(view) and len(survey):
         survey = survey[thin_positions(survey[:, :2, 3], _SURVEY_STEP_M)]
     seen = np.zeros(len(cells.face), bool)
-    for pose in survey:
-        seen |= cells_seen_from(cells, outer_m, pose, view)
+    for pose in np.concatenate([survey[start::_LEAPS] for start in range(_LEAPS)]):
+        if seen.all():
+            break
+        seen |= cells_seen_from(cells, outer_m, pose, view, ~seen)
     return seen
 
 
-def cells_in_field(cells: FaceCells, world_from_sensor: FloatArray, field_rad: float) -> BoolArray:
-    """Return which cells (c,) lie in a sensor's field at a pose (4, 4), half of it on each side."""
-    offset_m = (cells.middle_m - world_from_sensor[:2, 3]) @ world_from_sensor[:2, :2]
+def is_in_field(xy_m: FloatArray, world_from_sensor: FloatArray, field_rad: float) -> BoolArray:
+    """Return which places (n, 2) lie in a sensor's field at a pose (4, 4), half on each side."""
+    offset_m = (xy_m - world_from_sensor[:2, 3]) @ world_from_sensor[:2, :2]
     return np.abs(np.arctan2(offset_m[:, 1], offset_m[:, 0])) <= field_rad / 2
 
 
@@ -164,41 +182,57 @@ def _sees_all_around(view: SensorView) -> bool:
     return view.field_rad >= 2 * np.pi
 
 
-def _part_view(faces_m: FloatArray, position_m: FloatArray) -> _Sectors:
+def _part_view(
+    faces_m: FloatArray, position_m: FloatArray, sought: IntArray | None = None
+) -> _Sectors:
+    """Return the view from a place, at least in the sectors that sought faces lie in."""
     ends_m = faces_m - position_m
     angle_rad = np.arctan2(ends_m[:, :, 1], ends_m[:, :, 0])
     turn_rad = (angle_rad[:, 1] - angle_rad[:, 0] + np.pi) % (2 * np.pi) - np.pi
     begin_rad, end_rad = np.where(turn_rad > 0, angle_rad.T, angle_rad.T[::-1])
     edges_rad = np.unique(angle_rad)
+    n_sectors = len(edges_rad)
     first = np.searchsorted(edges_rad, begin_rad)
-    count = (np.searchsorted(edges_rad, end_rad) - first) % len(edges_rad)
-    return _Sectors(ends_m, edges_rad, _nearest_faces(edges_rad, first, count, ends_m))
+    last = first + (np.searchsorted(edges_rad, end_rad) - first) % n_sectors
+    is_sought = np.ones(len(faces_m), bool)
+    if sought is not None:
+        is_sought[:] = False
+        is_sought[sought] = True
+    begun, ended = (np.bincount(at[is_sought], minlength=2 * n_sectors) for at in (first, last))
+    is_wanted = np.cumsum(begun - ended).reshape(2, -1).any(axis=0)
+    wanted = np.flatnonzero(is_wanted)
+    nearest = np.full(n_sectors, -1)
+    nearest[wanted] = _nearest_faces(edges_rad, wanted, first, last, ends_m)
+    return _Sectors(ends_m, edges_rad, nearest)
 
 
 def _nearest_faces(
-    edges_rad: FloatArray, first: Array, count: Array, ends_m: FloatArray
+    edges_rad: FloatArray, wanted: IntArray, first: IntArray, last: IntArray, ends_m: FloatArray
 ) -> IntArray:
-    """Return the nearest face of each sector, -1 where there is none.
+    """Return the nearest face (w,) of each wanted sector, -1 where there is none.
 
-    Face i lies in the `count[i]` sectors from `first[i]` on.
+    Face i lies in the sectors from `first[i]` until before `last[i]`, which go on after the turn.
     """
-    n_sectors = len(edges_rad)
+    n_wanted = len(wanted)
+    turned = np.concatenate([wanted, wanted + len(edges_rad)])
+    begin = np.searchsorted(turned, first)
+    count = np.searchsorted(turned, last) - begin
     face = np.repeat(np.arange(len(ends_m)), count)
-    step = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
-    sector = (first[face] + step) % n_sectors
+    place = np.arange(len(face)) + np.repeat(begin - np.cumsum(count) + count, count)
+    place = np.where(place < n_wanted, place, place - n_wanted)
     middle_rad = edges_rad + np.diff(edges_rad, append=edges_rad[0] + 2 * np.pi) / 2
-    ray = np.column_stack([np.cos(middle_rad), np.sin(middle_rad)])[sector]
-    start_m = ends_m[face, 0]
-    way_m = (ends_m[:, 1] - ends_m[:, 0])[face]
-    toward = _cross(ray, way_m)
+    middle_rad = middle_rad[wanted]
+    ray = np.column_stack([np.cos(middle_rad), np.sin(middle_rad)])
+    way_m = ends_m[:, 1] - ends_m[:, 0]
+    toward = _cross(ray[place], way_m[face])
     # in a sector of no width a face can be edge-on, and occludes nothing
     toward = np.where(toward == 0, np.nan, toward)
-    distance_m = np.nan_to_num(_cross(start_m, way_m) / toward, nan=np.inf)
-    least_m = np.full(n_sectors, np.inf)
-    np.minimum.at(least_m, sector, distance_m)
-    is_nearest = (distance_m == least_m[sector]) & np.isfinite(distance_m)
-    nearest = np.full(n_sectors, -1)
-    nearest[sector[is_nearest]] = face[is_nearest]
+    distance_m = np.nan_to_num(_cross(ends_m[:, 0], way_m)[face] / toward, nan=np.inf)
+    least_m = np.full(n_wanted, np.inf)
+    np.minimum.at(least_m, place, distance_m)
+    is_nearest = (distance_m == least_m[place]) & np.isfinite(distance_m)
+    nearest = np.full(n_wanted, -1)
+    nearest[place[is_nearest]] = face[is_nearest]
     return nearest
 
 

@@ -10,7 +10,7 @@ from scanplan.lab.buildings.tolerances import CRACK_M
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import Array, BoolArray, FloatArray
 
 _PARALLEL_SINE = 0.1  # of the angle of a face to its wall, 6 degrees: its jambs stand across
 
@@ -36,17 +36,21 @@ def mark_visible(
     inner = [i for i, (_, values) in enumerate(features) if values.get("side") == "inside"]
     faces = select_faces(features)
     cells = face_cells.cut_faces(faces.inner_m)
-    is_seen = visible_faces.cells_seen_by_any(cells, faces.outer_m, poses, sensor)
     is_pane = np.array([features[i][1].get("material") == "glass" for i in inner], bool)
-    if is_pane.any():
-        is_seen[~is_pane[cells.face]] = _seen_through_panes(faces, is_pane, poses, sensor)
+    is_seen = np.zeros(len(cells.face), bool)
+    # panes hide other panes, and nothing else
+    for chosen, others_m in ((~is_pane, faces.outer_m), (is_pane, _all_but(faces, is_pane))):
+        is_seen[chosen[cells.face]] = visible_faces.cells_seen_by_any(
+            face_cells.cut_faces(faces.inner_m[chosen]), others_m, poses, sensor
+        )
+    middles = np.asarray(shapely.points(cells.middle_m), object)
     length_m = np.where(is_seen, cells.length_m, 0.0)
     by_face_m = np.bincount(cells.face, length_m, len(inner))
     visible_m = dict(zip(inner, by_face_m.tolist(), strict=True))
     for i, (geometry, values) in enumerate(features):
         if values["kind"] == "wall":
             widest_m = max(values["thickness_m"], values.get("end_thickness_m", 0.0))
-            on_wall = _on_wall(geometry, widest_m, cells)
+            on_wall = _on_wall(geometry, widest_m, cells, middles)
             visible_m[i] = float(length_m[on_wall].sum())
     return [
         (g, {**values, "visible_m": round(visible_m[i], 3)} if i in visible_m else values)
@@ -54,12 +58,9 @@ def mark_visible(
     ]
 
 
-def _seen_through_panes(
-    faces: TrueFaces, is_pane: BoolArray, poses: FloatArray, sensor: visible_faces.SensorView
-) -> BoolArray:
-    """Return which cells of the faces that are no panes a scan could see, were there no panes."""
-    cells = face_cells.cut_faces(faces.inner_m[~is_pane])
-    return visible_faces.cells_seen_by_any(cells, faces.outer_m, poses, sensor)
+def _all_but(faces: TrueFaces, chosen: BoolArray) -> FloatArray:
+    """Return all faces but those inner ones."""
+    return np.concatenate([faces.inner_m[~chosen], faces.outer_m])
 
 
 def select_faces(features: Sequence[Feature]) -> TrueFaces:
@@ -78,9 +79,11 @@ def _ends_m(lines: Sequence[BaseGeometry]) -> FloatArray:
     return np.array([line.coords for line in lines]).reshape(-1, 2, 2)
 
 
-def _on_wall(line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells) -> BoolArray:
-    """Return which cells (c,) are of the faces of a straight wall."""
-    is_beside = shapely.dwithin(shapely.points(cells.middle_m), line, thickness_m / 2 + CRACK_M)
+def _on_wall(
+    line: BaseGeometry, thickness_m: float, cells: face_cells.FaceCells, middles: Array
+) -> BoolArray:
+    """Return which cells (c,), with their middles as Points, are of a straight wall's faces."""
+    is_beside = shapely.dwithin(middles, line, thickness_m / 2 + CRACK_M)
     face = np.diff(cells.faces_m, axis=1)[:, 0]
     wall = np.diff(line.coords, axis=0)[0]
     sine = (
