@@ -1,5 +1,7 @@
 """Which floors of the realistic bench are named by words, and what became of their plans."""
 
+import json
+import math
 import os
 import sys
 from pathlib import Path
@@ -10,7 +12,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 
 import catalogue
-from realistic import floors, plans, recordings
+from realistic import floors, plans, recordings, scoring
+
+from scanplan.errors import StageError
 
 
 def names(chosen):
@@ -185,3 +189,74 @@ class TestPlans:
             "order_scans_wall_length_s": 1.0,
         }
         assert len(costs) == 6
+
+
+class TestRecordings:
+    """Two drives, simulated by what stands in for the simulator, in this process."""
+
+    class Here:
+        """A pool that does what it is given at once."""
+
+        def __init__(self, *_, **__):
+            pass
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def submit(self, function, *given):
+            result = function(*given)
+            return SimpleNamespace(result=lambda: result)
+
+    def record(self, folder, monkeypatch, faults):
+        """Record floors of which some fail, by name to their fault; return all and the names."""
+        chosen = floors.choose_floors(folder / "none", ["dwelling_101_laser270", "attic"])[:2]
+
+        def simulate(*, recording, **_):
+            name = recording.parent.name
+            if name in faults:
+                raise faults[name]
+            recording.touch()
+
+        monkeypatch.setattr(recordings.simulate_survey, "simulate_survey", simulate)
+        monkeypatch.setattr(recordings, "ProcessPoolExecutor", self.Here)
+        recorded = recordings.record_floors(chosen, folder)
+        return chosen, recorded, [floor.name for floor in chosen]
+
+    @pytest.mark.parametrize(
+        ("fault", "words"),
+        [
+            (StageError("walls.geojson: no way"), "simulate: walls.geojson: no way"),
+            (ZeroDivisionError("by 0"), "simulate: ZeroDivisionError: by 0"),
+        ],
+    )
+    def test_one_that_fails_says_why_and_ends_no_other(self, tmp_path, monkeypatch, fault, words):
+        chosen, recorded, (first, second) = self.record(tmp_path, monkeypatch, {})
+        assert recorded[first].failed == recorded[second].failed == ""
+        (tmp_path / "truths" / first / "made.json").write_text('{"digest": "of other code"}')
+        _, recorded, _ = self.record(tmp_path, monkeypatch, {first: fault})
+        assert recorded[first].failed == words and math.isnan(recorded[first].seconds)
+        assert recorded[second].failed == "" and recorded[second].seconds >= 0
+        # what an earlier run made of the floor is not taken for its plan
+        (tmp_path / "results" / first).mkdir(parents=True)
+        row, elements = scoring._score(chosen[0], recorded[first], tmp_path / "results")
+        assert row["floor"] == first and row["failed"] == words and elements is None
+
+    def test_one_that_failed_is_tried_again(self, tmp_path, monkeypatch):
+        _, _, (first, _) = self.record(tmp_path, monkeypatch, {})
+        made = tmp_path / "truths" / first / "made.json"
+        whole = made.read_text()
+        made.write_text('{"digest": "of other code"}')
+        self.record(tmp_path, monkeypatch, {first: StageError("no way")})
+        assert not made.exists()
+        _, recorded, _ = self.record(tmp_path, monkeypatch, {})
+        assert recorded[first].failed == ""
+        assert json.loads(made.read_text())["digest"] == json.loads(whole)["digest"]
+
+    def test_no_plan_is_made_of_one_that_failed(self, tmp_path, monkeypatch):
+        failed = recordings.Recorded(tmp_path, tmp_path, None, failed="simulate: no way")
+        monkeypatch.setattr(plans.guard, "check_out", lambda *_: tmp_path)
+        monkeypatch.setattr(plans, "_run_workflow", lambda *_: pytest.fail("nothing to run"))
+        plans.make_plans(tmp_path, "HEAD", tmp_path, {"one": failed})

@@ -3,6 +3,7 @@
 import sys
 import xml.etree.ElementTree
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -252,7 +253,7 @@ def test_a_run_has_a_folder_and_a_title_by_its_commit_and_words(tmp_path, monkey
     asked = {}
     stands_in = {
         (realistic.floors, "choose_floors"): lambda _, words: asked.update(words=words) or [floor],
-        (realistic.recordings, "record_floors"): lambda *_: {"one": None},
+        (realistic.recordings, "record_floors"): lambda *_: {"one": SimpleNamespace(failed="")},
         (realistic.plans, "make_plans"): lambda *given: asked.update(settings=given[4]),
         (realistic.scoring, "score_floors"): lambda *_: (measures, elements),
         (realistic.scoring, "read_true_features"): lambda *_: TRUTH,

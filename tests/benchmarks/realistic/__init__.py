@@ -49,6 +49,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
     truths = {
         floor.name: scoring.read_true_features(recorded[floor.name], _drawing(floor, folder))
         for floor in chosen
+        if not recorded[floor.name].failed
     }
     page.write_page(home / "index.html", f"Plans of {title}", measures, elements, truths)
     (home / "summary.md").write_text(summary.format_tables(measures), encoding="utf-8")

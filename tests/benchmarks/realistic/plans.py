@@ -53,10 +53,11 @@ def make_plans(
     Returns
     -------
     Path
-        The folder of the results. A floor whose plan could not be made lacks its tables.
+        The folder of the results. A floor whose plan could not be made lacks its tables; one
+        without a recording is not tried.
     """
     code = guard.check_out(project, revision, folder)
-    names = sorted(recorded)
+    names = sorted(name for name, files in recorded.items() if not files.failed)
     for first in range(0, len(names), _AT_ONCE):
         part = names[first : first + _AT_ONCE]
         print(f"realistic: plans {first + 1} to {first + len(part)} of {len(names)}", flush=True)

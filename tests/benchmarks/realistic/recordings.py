@@ -13,7 +13,6 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 import catalogue
 import yaml
@@ -21,6 +20,7 @@ import yaml
 import simulate_survey
 from helpers.default_settings import SETTINGS
 from realistic.floors import Floor
+from scanplan.errors import StageError
 from scanplan.project import code_files, stage_settings
 from scanplan.project.settings import merge_settings
 from scanplan.types import FilePath
@@ -43,41 +43,51 @@ class Recorded:
         Of a simulated drive.
     seconds : float
         Processor time that simulating took; NaN of a real one.
+    failed : str
+        Why it could not be simulated, so that none of the files need be there; else "".
     """
 
     dataset: Path
     truth: Path
     true_poses: Path | None
     seconds: float = float("nan")
+    failed: str = ""
 
 
 def record_floors(floors: Sequence[Floor], folder: Path) -> dict[str, Recorded]:
-    """Simulate the drives that are missing or out of date; return the recordings by floor."""
+    """Simulate the drives that are missing or out of date; return the recordings by floor.
+
+    A drive whose simulation fails ends no other's: its recording says why, and the next run tries
+    again.
+    """
     drives = [floor.drive for floor in floors if floor.drive]
     waiting = [drive for drive in drives if not _is_current(drive, folder)]
+    failed: dict[str, str] = {}
     if waiting:
         with ProcessPoolExecutor(_N_PROCESSES, mp_context=get_context("spawn")) as pool:
             jobs = [pool.submit(_simulate, drive, folder) for drive in waiting]
             for done, (drive, job) in enumerate(zip(waiting, jobs, strict=True), 1):
-                print(
-                    f"realistic: simulated {drive.name} in {job.result():.0f} s"
-                    f" ({done} of {len(waiting)})",
-                    flush=True,
-                )
-    return {floor.name: _find_files(floor, folder) for floor in floors}
+                made = job.result()
+                words = f"simulated {drive.name} in {made} s"
+                if isinstance(made, str):
+                    failed[drive.name] = made
+                    words = f"no recording of {drive.name}: {made}"
+                print(f"realistic: {words} ({done} of {len(waiting)})", flush=True)
+    return {floor.name: _find_files(floor, folder, failed.get(floor.name, "")) for floor in floors}
 
 
-def _find_files(floor: Floor, folder: Path) -> Recorded:
+def _find_files(floor: Floor, folder: Path, failed: str) -> Recorded:
     if floor.drive is None:
         assert floor.recording is not None and floor.truth is not None
         return Recorded(floor.recording, floor.truth, None)
     truth = folder / "truths" / floor.name
-    seconds = json.loads((truth / "made.json").read_text())["seconds"]
+    made = {} if failed else json.loads((truth / "made.json").read_text())
     return Recorded(
         folder / "recordings" / floor.name,
         truth / "truth.geojson",
         truth / "truth_poses.tum",
-        seconds,
+        made.get("seconds", float("nan")),
+        failed,
     )
 
 
@@ -97,33 +107,43 @@ def _digest(survey: Path) -> str:
     return total.hexdigest()[:16]
 
 
-def _simulate(drive: catalogue.Drive, folder: Path) -> float:
-    """Write a drive's dataset folder and its truth, and return the processor seconds it took."""
+def _simulate(drive: catalogue.Drive, folder: Path) -> float | str:
+    """Write a drive's dataset folder and its truth.
+
+    Return the processor seconds that it took, or what it failed of.
+    """
     survey = catalogue.write_survey(drive, folder / "surveys")
-    own = yaml.safe_load(survey.read_text())
     dataset, truth = folder / "recordings" / drive.name, folder / "truths" / drive.name
     for place in (dataset, truth):
         place.mkdir(parents=True, exist_ok=True)
-    settings = merge_settings(SETTINGS, own)
+    # files of an attempt that fails are those of no digest
+    (truth / "made.json").unlink(missing_ok=True)
     started = time.process_time()
-    files = {
+    try:
+        _run_simulation(survey, dataset, truth)
+    except StageError as error:
+        return f"simulate: {error}"
+    except Exception as error:  # whatever the fault, the other drives can be measured
+        return f"simulate: {type(error).__name__}: {error}"
+    seconds = round(time.process_time() - started, 2)
+    (truth / "made.json").write_text(json.dumps({"digest": _digest(survey), "seconds": seconds}))
+    return seconds
+
+
+def _run_simulation(survey: Path, dataset: Path, truth: Path) -> None:
+    """Simulate a survey's file into the folders of its recording and its truth."""
+    own = yaml.safe_load(survey.read_text())
+    settings = merge_settings(SETTINGS, own)
+    files: dict[str, FilePath] = {
         "building": settings["simulate"]["building"],
         "recording": dataset / "survey.bag",
         "truth": truth / "truth.geojson",
         "true_poses": truth / "truth_poses.tum",
         "true_trajectory": truth / "truth_trajectory.tum",
     }
-    _run_simulation(files, stage_settings.select_simulation(settings))
-    seconds = round(time.process_time() - started, 2)
+    # its progress would mix with that of the other process
+    with contextlib.redirect_stdout(io.StringIO()):
+        simulate_survey.simulate_survey(**files, **stage_settings.select_simulation(settings))
     (dataset / "dataset.yaml").write_text(
         yaml.safe_dump({key: value for key, value in own.items() if key != "simulate"})
     )
-    made = {"digest": _digest(survey), "seconds": seconds}
-    (truth / "made.json").write_text(json.dumps(made))
-    return seconds
-
-
-def _run_simulation(files: dict[str, FilePath], settings: dict[str, Any]) -> None:
-    # its progress would mix with that of the other process
-    with contextlib.redirect_stdout(io.StringIO()):
-        simulate_survey.simulate_survey(**files, **settings)

@@ -27,7 +27,7 @@ def score_floors(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return the measures of floors, a row each, and their elements.
 
-    A floor without a plan has a row that says in `failed` why.
+    A floor without a plan, or without a recording, has a row that says in `failed` why.
     """
     with ProcessPoolExecutor(_N_PROCESSES, mp_context=get_context("spawn")) as pool:
         jobs = [pool.submit(_score, floor, recorded[floor.name], results) for floor in floors]
@@ -47,10 +47,14 @@ def stack_floors(of_floors: Mapping[str, Mapping[str, Any]]) -> pd.DataFrame:
 def _score(
     floor: Floor, recorded: Recorded, results: Path
 ) -> tuple[dict[str, Any], Mapping[str, Any] | None]:
-    costs = plans.stage_costs(results, floor.name)
     named = ("name", "kind", "sensor", "half")
     row: dict[str, Any] = {key: value for key, value in asdict(floor).items() if key in named}
-    row = {"floor": row.pop("name"), **row, "failed": plans.last_words(results, floor.name)}
+    row = {"floor": row.pop("name"), **row, "failed": recorded.failed}
+    if recorded.failed:
+        # what lies among the results is of an earlier recording
+        return row, None
+    costs = plans.stage_costs(results, floor.name)
+    row |= {"failed": plans.last_words(results, floor.name)}
     row |= {"simulate_cpu_s": recorded.seconds, **costs}
     row["total_cpu_s"] = sum(v for k, v in costs.items() if k.endswith("_cpu_s") and v == v)
     if row["failed"]:
