@@ -94,6 +94,8 @@ class TestRooms:
 
 
 class TestPolygons:
+    """The rules of Floor-SP and RoomFormer; where each is stated: `room_polygons`."""
+
     def measure(self, *drawn, true=(A, B)):
         return room_polygons.measure_room_polygons(shapes(*drawn), shapes(*true))
 
@@ -140,6 +142,26 @@ class TestPolygons:
         row = self.measure(lower, B)
         assert row["metric_corner_recall"] == 1
         assert row["metric_angle_recall"] == pytest.approx(6 / 8)
+
+    def test_a_true_corner_takes_the_closest_of_several_and_each_is_taken_once(self):
+        # Floor-SP: of two drawn corners about one true one the closer is right, the other false
+        notched = shapely.Polygon([(0.1, 0), (4, 0), (4, 3), (0, 3), (0, 0.2)])
+        row = self.measure(notched, B)
+        assert row["floorsp_corner_recall"] == 1
+        assert row["floorsp_corner_precision"] == pytest.approx(8 / 9)
+        # and a drawn corner between two true ones finds one of them alone
+        true = shapely.Polygon([(0.2, 0), (4, 0), (4, 3), (0, 3), (0, 0.2)])
+        row = self.measure(A, B, true=(true, B))
+        assert row["floorsp_corner_recall"] == pytest.approx(8 / 9)
+        assert row["floorsp_corner_precision"] == 1
+
+    def test_a_drawn_room_is_the_largest_true_one_of_those_it_fits_best(self):
+        # RoomFormer: rooms that overlap by half and more are drawn as one; it is right once, and
+        # the larger one's corners are those that are asked for
+        large, small = shapely.box(0, 0, 4, 3), shapely.box(0, 0, 3, 3)
+        row = self.measure(large, true=(small, large))
+        assert row["roomformer_room_recall"] == 0.5 and row["roomformer_room_precision"] == 1
+        assert row["metric_corner_precision"] == 1 and row["metric_corner_recall"] == 0.5
 
     def test_corners_in_a_straight_wall_are_none(self):
         split = shapely.Polygon([(0, 0), (2, 0), (4, 0), (4, 3), (2, 3.02), (0, 3)])

@@ -1,25 +1,33 @@
 """Rooms, their corners and angles as the literature on floor plan reconstruction counts them.
 
 Floor-SP: Chen, Liu, Wu and Furukawa, ICCV 2019: a corner is right within 10 pixels of a true one,
-of several the closest; a room where its IoU with a true one is above 0.7 and it overlaps no other.
+of several about one true corner the closest alone; a room where its IoU with a true one is above
+0.7 and it overlaps no other. Its authors published no code of this: they changed FloorNet's, whose
+rooms need 0.5 (github.com/woodfrog/floor-sp, issue 11). The rules are the paper's as others quote
+and count them (github.com/EnriqueSolarte/direct_360_FPE, utils/metric.py). It does not say what
+becomes of a corner that is near two true ones; here it is one's, and the nearest pairs come first.
 
 RoomFormer: Yue, Kontogianni, Schindler and Engelmann, CVPR 2023, by the code that it takes over
-from MonteFloor (Stekovic et al., ICCV 2021), which CAGE (Liu et al. 2025, arXiv:2509.15459) uses
-too: each true room, the largest first, takes the drawn one of the best IoU, if that is above 0.5;
-a drawn room is right if it is taken and does not, eroded by two pixels, overlap another one. In
-right rooms each true corner asks the nearest drawn one: that is right within 10 pixels, and its
-angle, if besides it differs by at most 5 degrees. Recall is of all true corners, precision of all
-drawn ones.
+from MonteFloor (Stekovic et al., ICCV 2021; github.com/ywyue/RoomFormer,
+s3d_floorplan_eval/Evaluator/Evaluator.py): each true room, the largest first, takes the drawn one
+of the best IoU, if that is above 0.5; a drawn room is right if it is taken and does not, eroded by
+5 x 5 pixels, share a pixel with another one. In right rooms each true corner asks the nearest drawn
+one: that is right within 10 pixels, and its angle, if besides it differs by at most 5 degrees.
+Recall is of all true corners, precision of all drawn ones. CAGE (Liu et al., NeurIPS 2025) measures
+by the same scripts, as its README says (github.com/ee-Liu/CAGE).
 
 All count in pixels of a raster of 256 x 256. Floor-SP fits the longer side of the floor and a
-margin of 5 % at each end in it; RoomFormer each side of its own, with 10 % at each end, so that
-pixels are not square. Here the floor is the bounds of the rooms to be found. A pixel of a large
-floor is large: on one of 60 m a corner may be off by 2.8 m. So the same rules are also counted on
-pixels of 0.05 m, those of a dwelling of 12 m, whatever the size of the floor.
+margin of 5 % at each end in it (utils/RecordWriterLianjia.py there); RoomFormer each side of its
+own, with 10 % at each end (data_preprocess/stru3d/stru3d_utils.py), so that pixels are not square.
+Here the floor is the bounds of the rooms to be found. A pixel of a large floor is large: on one of
+60 m a corner may be off by 2.8 m. So the same rules are also counted on pixels of 0.05 m, those of
+a dwelling of 12 m, whatever the size of the floor.
 
-What differs from the codes: areas are of polygons and not of pixels, angles inside the corner and
-not between homogeneous lines, whose sign depends on where the origin is; and each room has corners
-of its own, as walls have a thickness, where Floor-SP's rooms share theirs.
+What differs from the codes: areas are of polygons and not of pixels, without the pixel that
+RoomFormer adds to each union, and what lies between rooms counts, which it leaves out within outer
+walls; angles are those inside the corner and not between homogeneous lines, whose sign depends on
+where the origin is; and each room has corners of its own, as walls have a thickness, where
+Floor-SP's rooms share theirs.
 """
 
 from collections.abc import Sequence
@@ -33,12 +41,12 @@ from scanplan.lab.evaluation.scores.score import precision_recall
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 PIXELS = 256  # of the side of the raster, in all three
-CORNER_PX = 10.0  # in all three
+CORNER_PX = 10.0  # in all three; on SceneCAD RoomFormer takes 20
 ANGLE_DEG = 5.0  # in RoomFormer and CAGE
 _ERODED_PX = 2.0  # RoomFormer: a kernel of five pixels
-_OVERLAP_PX = 1.0  # pixels that overlap: one is enough
-ROOMFORMER_IOU = 0.5  # in its code
-FLOORSP_IOU = 0.7  # in its paper
+_OVERLAP_PX = 1.0  # in its code: one pixel is enough
+ROOMFORMER_IOU = 0.5  # in its code, which wants more than that
+FLOORSP_IOU = 0.7  # in its paper, as others quote it: more than that
 _METRIC_M = 0.05  # see above
 _STRAIGHT_M = 0.05  # a vertex that is off the line of its neighbours by less is none to count
 
