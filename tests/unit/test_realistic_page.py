@@ -45,7 +45,8 @@ class TestPicture:
             shape = LINE if table == "stretch" else ROOM
             ((kind, style, _),) = paths(Element(table, shape, verdict))
             assert kind == f"{table} {verdict}" and f"stroke:{colour}" in style
-        assert f'"background:{colour}"></b>{verdict}' in page._key()
+        named = page._key().partition(f'"background:{colour}"></b>')[2].partition("<b")[0]
+        assert pictures.WORDS.get(verdict, verdict) in named.split(", ")
 
     def test_what_is_right_is_dark_and_lies_below_what_is_wrong_and_rooms_below_all(self):
         drawn = paths(
@@ -109,25 +110,34 @@ class TestPage:
 
     def test_the_worst_floor_is_first_and_one_without_a_plan_before_it(self, tmp_path):
         text = self.two(tmp_path)
-        assert text.index("<b>bad museum") < text.index("<b>good museum")
+        assert text.index("<b>bad, tuning") < text.index("<b>good, tuning")
         rows = [measured("good", 1.0), measured("bad", 0.5), measured("none", np.nan, "a < b")]
         of_floors = {"good": columns(*GOOD), "bad": columns(*BAD)}
         text = self.write(tmp_path, rows, of_floors)
-        assert text.index("<b>none museum") < text.index("<b>bad museum")
+        assert text.index("<b>none, tuning") < text.index("<b>bad, tuning")
         assert "1 floors without a plan" in text and "<li>none: a &lt; b</li>" in text
         assert text.count("<svg") == 2
 
     def test_errors_are_told_by_how_much_of_all_there_is_is_wrong(self, tmp_path):
         text = self.two(tmp_path)
         # one of three rooms that count; 2 m of the 40 m of wall that both plans draw
-        assert "<td>room: merged</td><td>1</td><td>24</td><td>33%</td><td>100%</td>" in text
-        assert "<td>stretch: leaf</td><td>1</td><td>2</td><td>5%</td><td>0%</td>" in text
-        assert text.index("room: merged") < text.index("stretch: leaf")
+        assert (
+            "<td>room: several in one</td><td>1</td><td>24 m2</td><td>33%</td><td>100%</td>" in text
+        )
+        assert "<td>wall: open leaf</td><td>1</td><td>2 m</td><td>5%</td><td>0%</td>" in text
+        assert text.index("room: several in one") < text.index("wall: open leaf")
+
+    def test_a_floor_is_told_by_its_commonest_errors(self, tmp_path):
+        more = [Element("stretch", LINE, "furniture")] * 3 + [Element("room", ROOM, "part")] * 2
+        more += [Element("column", ROOM, "missed")] * 4
+        text = self.write(tmp_path, [measured("bad", 0.5)], {"bad": columns(*BAD, *more)})
+        of_floor = text.partition("<b>bad, tuning</b><br>")[2].partition("<br>")[0]
+        assert of_floor == "4 column: missed; 3 wall: furniture; 2 room: part of one"
 
     def test_what_is_not_known_is_no_error_and_a_face_is_told_by_its_stretches(self, tmp_path):
         text = self.two(tmp_path)
-        assert "room: not_entered" not in text and "opening: unknown" not in text
-        assert "face: leaf" not in text
+        assert "room: not entered" not in text and "opening: unknown" not in text
+        assert "face: open leaf" not in text
 
     def test_halves_are_apart(self, tmp_path):
         rows = [measured("one", 1.0), measured("other", 0.5, half="reporting")]

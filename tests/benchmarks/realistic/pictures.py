@@ -28,7 +28,20 @@ COLOURS = {
     "unknown": "#b0b0b0",
     "not_entered": "#b0b0b0",
 }
-"""Verdict to colour; what is right is dark. A `wall` is a leaf that is drawn as one."""
+"""Verdict to colour; what is right is dark."""
+WORDS = {
+    "leaf": "open leaf",
+    "wall": "drawn as wall",
+    "mirrored": "outside or mirrored",
+    "shut_door": "shut door",
+    "bridge": "across an opening",
+    "other": "nothing there",
+    "wrong_type": "wrong type",
+    "merged": "several in one",
+    "part": "part of one",
+    "not_entered": "not entered",
+}
+"""Verdict to what people call it, where they do not call it that."""
 _RIGHT = "#303030"
 _WIDTH_PX = 460  # of a picture on the page: two beside each other on a laptop
 _MARGIN_M = 0.7
@@ -49,6 +62,14 @@ _TRUE = {
 def colour_of(verdict: str) -> str:
     """Return the colour that a verdict is drawn in."""
     return _RIGHT if verdict == "right" else COLOURS.get(verdict, COLOURS["other"])
+
+
+def list_colours() -> dict[str, str]:
+    """Return what errors, and what is right, are called by the colour that they are drawn in."""
+    called: dict[str, list[str]] = {_RIGHT: ["right"]}
+    for verdict, colour in COLOURS.items():
+        called.setdefault(colour, []).append(WORDS.get(verdict, verdict))
+    return {colour: ", ".join(dict.fromkeys(words)) for colour, words in called.items()}
 
 
 def draw_floor(truth: Sequence[TrueFeature], elements: Mapping[str, Array]) -> str:
