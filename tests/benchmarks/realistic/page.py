@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
 HEADLINES = {
     "wall_correctness_010": "walls correct",
+    "lsd_wall_correctness_010": "LSD's correct",
     "wall_completeness_010": "complete",
+    "lsd_wall_completeness_010": "LSD's complete",
     "room_iou": "rooms IoU",
     "watershed_room_iou": "the watershed's",
     "room_wrong_flagged": "wrong rooms flagged",

@@ -18,6 +18,11 @@ _OF_ROOMS = ("room_iou", "rooms_above_08_share", "bormann_recall", "bormann_prec
 _OF_LINES = ("wall_correctness_010", "wall_completeness_010")
 
 
+def has_line_detector() -> bool:
+    """Return whether OpenCV is installed, which finds lines in a raster (LSD)."""
+    return importlib.util.find_spec("cv2") is not None
+
+
 def measure_peers(placed: "Placed") -> dict[str, float]:
     """Return measures of peers by name, of all scans that were registered."""
     store = tables.ScanStore(placed.folder / "scans.parquet")
@@ -32,7 +37,7 @@ def measure_peers(placed: "Placed") -> dict[str, float]:
     score = score_files.score_peer_rooms(placed, rooms)
     found = {f"watershed_{name}": score.measures[name] for name in _OF_ROOMS}
     found["watershed_cpu_s"] = took_s
-    if importlib.util.find_spec("cv2") and placed.scene.is_whole:
+    if has_line_detector() and placed.scene.is_whole:
         lines_m = walls_bench.raster_lines(list(store.scans()), planar=store.planar)
         score = score_files.score_peer_lines(placed, lines_m)
         found |= {f"lsd_{name}": score.measures[name] for name in _OF_LINES}

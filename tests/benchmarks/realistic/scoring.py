@@ -29,6 +29,8 @@ def score_floors(
 
     A floor without a plan, or without a recording, has a row that says in `failed` why.
     """
+    if not peers.has_line_detector():
+        print("realistic: no OpenCV (cv2) here, so no lines of raster and LSD", flush=True)
     with ProcessPoolExecutor(_N_PROCESSES, mp_context=get_context("spawn")) as pool:
         jobs = [pool.submit(_score, floor, recorded[floor.name], results) for floor in floors]
         done = [job.result() for job in jobs]
