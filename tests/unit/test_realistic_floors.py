@@ -220,6 +220,16 @@ class TestRecordings:
                 raise faults[name]
             recording.touch()
 
+        def write(drive, surveys):
+            surveys.mkdir(parents=True, exist_ok=True)
+            building, survey = surveys / "building.geojson", surveys / f"{drive.name}.yaml"
+            building.touch()
+            survey.write_text(f"simulate: {{building: {building}}}\n")
+            return survey
+
+        # drawn buildings and digests of all code take seconds
+        monkeypatch.setattr(recordings.catalogue, "write_survey", write)
+        monkeypatch.setattr(recordings.code_files, "digest_helpers", lambda _: "code")
         monkeypatch.setattr(recordings.simulate_survey, "simulate_survey", simulate)
         monkeypatch.setattr(recordings, "ProcessPoolExecutor", self.Here)
         recorded = recordings.record_floors(chosen, folder)
