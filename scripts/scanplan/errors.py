@@ -8,6 +8,13 @@ MOST_NAMED = 8
 """Things in one line: nobody reads a longer one."""
 
 
+def show_controls(text: str) -> str:
+    """Return a text of visible characters alone: others, which may steer a terminal, as escapes."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)
+
+
 class StageError(Exception):
     """Wrong data or settings, in one line: the file, the value found, the limit and the remedy.
 
@@ -16,6 +23,6 @@ class StageError(Exception):
     """
 
     def __init__(self, message: object) -> None:
-        line = " ".join(str(message).split())
+        line = show_controls(" ".join(str(message).split()))
         # a value may be a page long: what is before and behind it says more
         super().__init__(line if len(line) <= 1200 else f"{line[:800]} ... {line[-300:]}")

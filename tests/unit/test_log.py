@@ -48,6 +48,13 @@ def test_a_bug_is_one_line_and_its_traceback_in_the_log(tmp_path):
     assert "Traceback" in log
 
 
+def test_nothing_that_is_told_steers_a_terminal(tmp_path):
+    result, log = run(tmp_path, r"log.log_warning('a \x1b[31m'); raise ValueError('b \x1b[2J\nc')")
+    assert r"a \x1b[31m" in log and r"a \x1b[31m" in result.stderr
+    assert r"ValueError: b \x1b[2J" in log and r"ValueError: b \x1b[2J c" in result.stderr
+    assert "\x1b" not in log + result.stderr
+
+
 @pytest.mark.parametrize(
     "body",
     [

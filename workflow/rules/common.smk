@@ -46,6 +46,7 @@ from scanplan.project.provenance import (
     discard_lone_note,
     end_results,
 )
+from scanplan.project.run.terminal import tell
 from scanplan.project.settings import (
     Layer,
     locate_fault,
@@ -71,7 +72,7 @@ def or_end(function, *arguments):
     except StageError as error:
         if IS_MODULE:
             raise WorkflowError(f"scanplan: {error}") from None
-        print(f"scanplan: {error}", file=sys.stderr)
+        tell(f"scanplan: {error}")
         raise SystemExit(1)
 
 
@@ -159,9 +160,9 @@ THESIS = or_end(thesis_if_fit)
 # a job's own process finds the note that its run has made
 if workflow.is_main_process and not IS_MODULE:
     for note in (note for found in GIVEN.values() for note in found.notes):
-        print(f"scanplan: {note}", file=sys.stderr)
+        tell(f"scanplan: {note}")
     for note in BUILDING.note_unaligned() if BUILDING else []:
-        print(f"scanplan: {note}", file=sys.stderr)
+        tell(f"scanplan: {note}")
     or_end(
         check_sources,
         {name: found.source for name, found in GIVEN.items()},

@@ -34,9 +34,8 @@ def end_older_jobs():
     ended = slurm_jobs.end_older_jobs(Path.cwd())
     OLDER_JOBS.extend(job.number for job in slurm_jobs.list_jobs(Path.cwd()))
     if ended:
-        print(
-            f"scanplan: Slurm jobs {', '.join(ended)} of an earlier run were cancelled; this one goes on",
-            file=sys.stderr,
+        tell(
+            f"scanplan: Slurm jobs {', '.join(ended)} of an earlier run were cancelled; this one goes on"
         )
 
 
@@ -80,10 +79,10 @@ def tell_results():
     targets = workflow.dag_settings.targets
     pages = {"thesis": "report", "thesis_more": "more"}
     for target in sorted(pages.keys() & set(targets)):
-        print(f"\nreport:  results/{RESERVED}/{pages[target]}.html", file=sys.stderr)
+        tell(f"\nreport:  results/{RESERVED}/{pages[target]}.html")
     if not workflow.dag_settings.until and set(targets) <= {"all", "comparison"}:
         for name in GIVEN:
-            print(run_outcome.describe_results(name), file=sys.stderr)
+            tell(run_outcome.describe_results(name))
 
 
 # before the jobs are worked out: while another run is at work, files come and go
@@ -130,7 +129,7 @@ def tell_overview():
         "results",
         sources,
     )
-    print(f"\nall      {page} (also {table})", file=sys.stderr)
+    tell(f"\nall      {page} (also {table})")
 
 
 onstart:
@@ -156,7 +155,7 @@ onsuccess:
             or_end(end_results, name, dataset.source)
     tell_results()
     tell_overview()
-    print(f"took     {THIS_RUN.elapsed()}", file=sys.stderr)
+    tell(f"took     {THIS_RUN.elapsed()}")
 
 
 onerror:
@@ -167,7 +166,7 @@ onerror:
     layers[RESERVED] = ()
     run_outcome.remove_unfinished(layers)
     for line in run_outcome.describe_failure(THIS_RUN, layers, causes_in_slurm()):
-        print(f"scanplan: {line}", file=sys.stderr)
+        tell(f"scanplan: {line}")
     tell_overview()
     # whatever Snakemake would add says less
     raise SystemExit(THIS_RUN.exit_status)

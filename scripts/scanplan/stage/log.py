@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TextIO, TypeVar
 
 from scanplan import interrupts
-from scanplan.errors import MORE_MEMORY, StageError
+from scanplan.errors import MORE_MEMORY, StageError, show_controls
 from scanplan.plain_types import FilePath
 from scanplan.stage import bytecode, orphans
 
@@ -24,6 +24,13 @@ _log = logging.getLogger("scanplan")
 _screen: TextIO | None = None
 
 Item = TypeVar("Item")
+
+
+class _Formatter(logging.Formatter):
+    """Lines that may be shown on a terminal as they are, whatever was put into them."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        return "\n".join(map(show_controls, super().format(record).split("\n")))
 
 
 @contextmanager
@@ -42,9 +49,9 @@ def log_to_file(path: FilePath) -> Iterator[None]:
     """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     with _redirect_output(path):
-        logging.basicConfig(
-            level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s", force=True
-        )
+        handler = logging.StreamHandler()
+        handler.setFormatter(_Formatter("%(asctime)s %(levelname)s %(message)s"))
+        logging.basicConfig(level=logging.INFO, handlers=[handler], force=True)
         faulthandler.enable()
         # what is imported stays: the collector is not to look through it over and over
         gc.freeze()
@@ -139,7 +146,7 @@ def log_warning(text: str) -> None:
 
 def _show(line: str) -> None:
     if _screen is not None and interrupts.WATCHED not in os.environ:
-        _screen.write(f"{line}\n")
+        _screen.write(f"{show_controls(line)}\n")
 
 
 def report_progress(

@@ -5,10 +5,18 @@ No heavy imports: this is part of the run itself.
 
 import os
 import shutil
+import sys
 from collections.abc import Sequence
 from typing import TextIO
 
+from scanplan.errors import show_controls
+
 _ERASE_BELOW = "\x1b[J"
+
+
+def tell(text: str) -> None:
+    """Write lines on the error output, none of whose characters steers a terminal."""
+    print(*map(show_controls, text.split("\n")), sep="\n", file=sys.stderr)
 
 
 class Terminal:
@@ -50,6 +58,7 @@ class Terminal:
 
     def _fit(self, line: str) -> str:
         """Return a line that does not wrap: one more row would be one that nobody erases."""
+        line = show_controls(line)
         if not self.in_place:
             return line
         width = shutil.get_terminal_size().columns - 1
