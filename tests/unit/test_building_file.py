@@ -1,9 +1,11 @@
 """building.yaml: which datasets are storeys of one building, and one line for each mistake."""
 
+import os
+
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.building_file import find_building, read_building
+from scanplan.project.building_file import find_building, list_overlooked, read_building
 
 GOOD = """\
 name: Town hall
@@ -58,7 +60,21 @@ def test_a_shared_frame_needs_no_elevation(tmp_path):
         (GOOD.replace("elevation_m: 0", "elevation_m: high"), "elevation_m is 'high'"),
         (GOOD.replace("[1.5, -2, 90]", "[1.5, -2]"), "storey 2: building_from_map is [1.5, -2]"),
         (GOOD.replace("floor_1", "floor_0"), "dataset floor_0 is two storeys"),
-        (GOOD.replace("Ground floor", '"a\\nb"'), "storey 1: name is 'a\\nb'"),
+        (GOOD.replace("Ground floor", '"a\\nb"'), "storey 1: name has '\\n'"),
+        (
+            GOOD.replace("Ground floor", "a" * 10_000),
+            "storey 1: name has 10000 characters, expected",
+        ),
+        (
+            GOOD.replace("3.2", "0"),
+            "Ground floor and floor_1 lie 0 m apart, storeys are at least 0.5",
+        ),
+        (GOOD.replace("3.2", "1.0e+8"), "elevation_m is 100000000.0, expected metres, up to 10000"),
+        (GOOD.replace("[1.5, -2, 90]", "[1.5, -2, 361]"), "up to 10000 m and 360"),
+        (GOOD.replace("[1.5, -2, 90]", "[1.5, .nan, 90]"), "up to 10000 m and 360"),
+        (GOOD.replace("Town hall", "[1, 2]"), "name is [1, 2], expected text of 1 to 80"),
+        (GOOD.replace("Town hall", "thesis"), "thesis is a target of the workflow"),
+        (GOOD.replace("Town hall", "Comparison"), "Comparison is a target of the workflow"),
         (GOOD.replace("dataset: floor_0", "data: floor_0"), "expected `dataset: NAME`"),
     ],
 )
@@ -87,7 +103,22 @@ def test_a_storey_without_scans_ends_in_one_line(tmp_path):
 
 
 def test_a_building_has_a_name_of_its_own(tmp_path):
-    written(tmp_path, GOOD.replace("Town hall", "floor_0"))
+    written(tmp_path, GOOD.replace("Town hall", "FLOOR_0"))
     given = {name: str(tmp_path / name) for name in ("floor_0", "floor_1")}
-    with pytest.raises(StageError, match="name floor_0 is that of a dataset; choose another"):
+    with pytest.raises(StageError, match="name FLOOR_0 is that of a dataset; choose another"):
         find_building(given)
+
+
+def test_what_is_no_file_is_told(tmp_path):
+    given = {name: str(tmp_path / name) for name in ("floor_0", "floor_1")}
+    os.mkfifo(tmp_path / "building.yaml")
+    with pytest.raises(StageError, match=r"building\.yaml: is a pipe, expected a file"):
+        find_building(given)
+
+
+def test_a_file_of_nearly_its_name_is_told(tmp_path):
+    given = {name: str(tmp_path / name) for name in ("floor_0", "floor_1")}
+    assert list_overlooked(given) == list_overlooked({"floor_0": given["floor_0"]}) == []
+    (tmp_path / "Building.yml").write_text(GOOD)
+    (note,) = list_overlooked(given)
+    assert "Building.yml is not used; storeys are read from building.yaml, rename it" in note

@@ -178,13 +178,37 @@ def test_half_a_truth_is_told(tmp_path, there, missing):
 
 
 @pytest.mark.parametrize(
-    "name", ["dataset.yml", "Dataset.yaml", "dataset.yaml.txt", "dataset.json"]
-)
-def test_settings_of_another_name_are_told(tmp_path, name):
+    ("name", "read"),
+    [
+        *((name, "settings of a dataset are read from dataset.yaml") for name in (
+            "dataset.yml", "Dataset.yaml", "dataset.yaml.txt", "dataset.json")),
+        *((name, "corrections are read from corrections.yaml or corrections.geojson") for name in (
+            "corrections.yml", "Corrections.yaml", "corrections.json", "CORRECTIONS.GEOJSON",
+            "corrections.yaml.txt")),
+        *((name, "the truth is read from truth.geojson or truth_poses.tum") for name in (
+            "Truth.geojson", "truth.json", "truth_poses.tum.txt")),
+    ],
+)  # fmt: skip
+def test_files_of_nearly_a_name_that_is_read_are_told(tmp_path, name, read):
     put(tmp_path / "a.bag")
     put(tmp_path / name)
     (note,) = dataset_files.list_overlooked(tmp_path)
-    assert f"{name} is not used" in note and "dataset.yaml, rename" in note
+    assert note == f"{tmp_path}: {name} is not used; {read}, rename it"
+
+
+def test_links_and_folders_of_nearly_a_name_are_told(tmp_path):
+    put(tmp_path / "a.bag")
+    (tmp_path / "corrections.yml").symlink_to("nowhere")
+    (tmp_path / "dataset.yml").mkdir()
+    settings, corrections = dataset_files.list_overlooked(tmp_path)
+    assert "dataset.yml is not used" in settings and "corrections.yml is" in corrections
+
+
+@pytest.mark.parametrize("name", ["run\n2.bag", "\x1b[31mrun.bag", "a\u202eb.bag", "run\udcff.bag"])
+def test_a_recording_whose_name_cannot_be_shown_is_refused(tmp_path, name):
+    put(tmp_path / name)
+    with pytest.raises(StageError, match=r"in its name; rename it"):
+        dataset_files.find_files(tmp_path)
 
 
 def test_a_survey_file_is_told_from_a_folder(tmp_path):

@@ -1,5 +1,7 @@
 """Many datasets, listed in a file."""
 
+import os
+
 import pytest
 
 from scanplan.errors import StageError
@@ -44,7 +46,16 @@ def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path):
         ("path\tname\na\t../b\n", "line 2: '../b' names no results"),
         ("name\tpath\na\t\n", "line 2: has no path"),
         ("name\tpath\nx\ta\nx\tb\n", "b: its results would be called x like those of a"),
-        ("name\tpath\nthesis\ta\n", "rename the dataset"),
+        ("name\tpath\nX\ta\nx\tb\n", "b: its results would be called x like those of a, case of"),
+        ("name\tpath\nthesis\ta\n", "a: thesis is a target .*; choose another name"),
+        ("name\tpath\nThesis\ta\n", "a: Thesis is a target"),
+        ("name\tpath\nsummary.html\ta\n", "a: summary.html is a target"),
+        ("path\nfloors/all\n", "floors/all: all is a target"),
+        ("path\tpath\na\tb\n", "names the column path 2 times; keep one"),
+        ("name\tpath\tname\nx\ta\ty\n", "names the column name 2 times; keep one"),
+        ("path\n" + "a/" * 2500 + "b\n", "is a path of 5001 bytes, at most 4095"),
+        ("name\tpath\nx\t" + "a" * 300 + "\n", "is a name of 300 bytes, at most 255"),
+        ("path\na\x1b[31mb\n", r"has '\\x1b' in its name; rename it"),
     ],
 )
 def test_what_says_too_little_is_refused(tmp_path, text, said):
@@ -53,8 +64,19 @@ def test_what_says_too_little_is_refused(tmp_path, text, said):
 
 
 def test_a_missing_list_is_told(tmp_path):
-    with pytest.raises(StageError, match="No such file"):
+    with pytest.raises(StageError, match="does not exist"):
         name_datasets(str(tmp_path / "none.tsv"))
+
+
+def test_a_path_with_nul_is_told():
+    with pytest.raises(StageError, match=r"a\\x00b: has '\\x00' in its name"):
+        name_datasets(["a\0b"])
+
+
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "floors.tsv")
+    with pytest.raises(StageError, match="is a pipe, expected a file"):
+        name_datasets(str(tmp_path / "floors.tsv"))
 
 
 def test_bytes_that_are_no_text_are_told(tmp_path):

@@ -26,6 +26,11 @@ def test_faults_are_told_in_one_line(target, told):
     assert str(caught.value).startswith(f"{target}: ") and "\n" not in str(caught.value)
 
 
+def test_a_target_that_would_steer_a_terminal_is_refused():
+    with pytest.raises(StageError, match="in its name; rename it"):
+        check_targets(["results/\x1b[31m"], ["demo"], FOLDERS)
+
+
 def test_rules_and_results_are_targets():
     asked = ["all", "thesis", "results/demo/plan/plan.svg", "results/thesis/report.html"]
     asked += ["results/town_hall/building.ifc", "results/overview.html", "plan.svg", ""]

@@ -26,11 +26,9 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
 from scanplan.lab.thesis import experiments
-from scanplan.project import export_formats, stage_settings
-from scanplan.project.building_file import find_building
+from scanplan.project import building_file, export_formats, stage_settings
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
-    RESERVED,
     describe_dataset,
     find_truth,
     list_comparison,
@@ -38,6 +36,7 @@ from scanplan.project.dataset import (
     name_datasets,
     survey_files,
 )
+from scanplan.project.dataset_files import RESERVED
 from scanplan.project.name_pattern import match_names
 from scanplan.project.provenance import (
     begin_results,
@@ -155,11 +154,14 @@ def thesis_if_fit():
 
 GIVEN = or_end(given_datasets)
 # two or more datasets in a folder with building.yaml are storeys of one building
-BUILDING = or_end(find_building, name_datasets(RUN["dataset"]))
+NAMED = name_datasets(RUN["dataset"])
+BUILDING = or_end(building_file.find_building, NAMED)
 THESIS = or_end(thesis_if_fit)
 # a job's own process finds the note that its run has made
 if workflow.is_main_process and not IS_MODULE:
     for note in (note for found in GIVEN.values() for note in found.notes):
+        tell(f"scanplan: {note}")
+    for note in building_file.list_overlooked(NAMED):
         tell(f"scanplan: {note}")
     for note in BUILDING.note_unaligned() if BUILDING else []:
         tell(f"scanplan: {note}")

@@ -5,14 +5,14 @@ No heavy imports: this runs while the workflow is being parsed.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files
+from scanplan.project import dataset_files, texts, user_file
 from scanplan.project.yaml_file import read_yaml
 
 if TYPE_CHECKING:
@@ -21,6 +21,12 @@ if TYPE_CHECKING:
 BUILDING_FILE = "building.yaml"
 _KEYS = {"name", "frame", "storeys"}
 _STOREY_KEYS = {"dataset", "name", "elevation_m", "building_from_map"}
+_HIGHEST_M = 10_000.0
+"""Above or below the building's zero: heights above the sea, and the deepest mines."""
+_FARTHEST_M = 10_000.0
+"""Between the map frames of storeys: wider than any building."""
+_LEAST_APART_M = 0.5
+"""From floor to floor: a mezzanine, or a wing some steps up."""
 
 
 @dataclass(frozen=True)
@@ -82,21 +88,37 @@ def find_building(datasets: Mapping[str, FilePath | None]) -> Building | None:
     StageError
         If the file is wrong, or names a storey that has no scans.
     """
-    paths = [Path(path) for path in datasets.values() if path is not None]
-    folders = {path.absolute().parent for path in paths}
-    if len(datasets) < 2 or len(paths) < len(datasets) or len(folders) != 1:
-        return None
-    path = Path(paths[0].parent, BUILDING_FILE)
-    if not path.is_file():
+    folder = _find_folder(datasets)
+    remedy = "write the storeys there, or remove it"
+    path = folder and user_file.find_file(folder / BUILDING_FILE, remedy)
+    if path is None:
         return None
     building = read_building(path)
     for storey in building.storeys:
         if storey.dataset not in datasets:
             fault = f"storey {storey.name} has no scans: its dataset {storey.dataset} is not given"
             raise StageError(f"{path}: {fault} ({', '.join(datasets)}); add it, or leave it out")
-    if building.name in datasets:
+    if building.name.casefold() in map(str.casefold, datasets):
         raise StageError(f"{path}: name {building.name} is that of a dataset; choose another")
     return building
+
+
+def list_overlooked(datasets: Mapping[str, FilePath | None]) -> list[str]:
+    """List in lines which files beside datasets have nearly the name of a building's."""
+    folder = _find_folder(datasets)
+    if folder is None:
+        return []
+    note = dataset_files.note_misnamed(folder, (BUILDING_FILE,), "storeys are")
+    return [note] if note else []
+
+
+def _find_folder(datasets: Mapping[str, FilePath | None]) -> Path | None:
+    """Return the one folder that two or more datasets lie in; None where there is none."""
+    paths = [Path(path) for path in datasets.values() if path is not None]
+    folders = {path.absolute().parent for path in paths}
+    if len(datasets) < 2 or len(paths) < len(datasets) or len(folders) != 1:
+        return None
+    return paths[0].parent
 
 
 def read_building(path: FilePath) -> Building:
@@ -122,8 +144,23 @@ def read_building(path: FilePath) -> Building:
     for i, storey in enumerate(storeys):
         if storey.dataset in [other.dataset for other in storeys[:i]]:
             raise StageError(f"{path}: dataset {storey.dataset} is two storeys; leave one out")
-    name = dataset_files.dataset_name(str(values.get("name") or "building"))
+    _check_elevations(path, storeys)
+    given_name = texts.check_text(f"{path}: name", values.get("name", "building"))
+    name = dataset_files.dataset_name(given_name)
+    dataset_files.check_results_name(str(path), name)
     return Building(name, storeys)
+
+
+def _check_elevations(path: FilePath, storeys: Sequence[Storey]) -> None:
+    """Refuse storeys at one height: their models and drawings would lie in one another."""
+    stated = [storey for storey in storeys if storey.elevation_m is not None]
+    stated.sort(key=lambda storey: storey.elevation_m or 0.0)
+    for lower, upper in pairwise(stated):
+        apart_m = (upper.elevation_m or 0.0) - (lower.elevation_m or 0.0)
+        if apart_m < _LEAST_APART_M:
+            fault = f"{lower.name} and {upper.name} lie {apart_m:g} m apart"
+            limit = f"storeys are at least {_LEAST_APART_M:g} m apart"
+            raise StageError(f"{path}: by elevation_m {fault}, {limit}; give that of each floor")
 
 
 def _read_storey(place: str, values: Any, is_shared: bool, *, is_first: bool) -> Storey:
@@ -135,22 +172,26 @@ def _read_storey(place: str, values: Any, is_shared: bool, *, is_first: bool) ->
     elevation_m = values.get("elevation_m")
     if elevation_m is None and not is_shared:
         raise StageError(f"{place}: has no elevation_m; give it, or `frame: shared` for all")
-    if elevation_m is not None and not _is_number(elevation_m):
-        raise StageError(f"{place}: elevation_m is {elevation_m!r}, expected metres")
-    name = values.get("name", values["dataset"])
-    if not isinstance(name, str) or not name.isprintable() or not name.strip():
-        raise StageError(f"{place}: name is {name!r}, expected text of one line")
+    if elevation_m is not None and not _is_number(elevation_m, _HIGHEST_M):
+        expected = f"expected metres, up to {_HIGHEST_M:g}"
+        raise StageError(f"{place}: elevation_m is {elevation_m!r}, {expected}")
+    name = texts.check_text(f"{place}: name", values.get("name", values["dataset"]))
     motion = values.get("building_from_map")
-    is_motion = isinstance(motion, list) and len(motion) == 3 and all(map(_is_number, motion))
-    if motion is not None and not is_motion:
-        expected = "expected [x_m, y_m, rotation_deg]"
+    if motion is not None and not _is_motion(motion):
+        expected = f"expected [x_m, y_m, rotation_deg], up to {_FARTHEST_M:g} m and 360"
         raise StageError(f"{place}: building_from_map is {motion!r}, {expected}")
     x_m, y_m, rotation_deg = map(float, motion or (0, 0, 0))
     aligned = is_shared or is_first or motion is not None
     height_m = None if elevation_m is None else float(elevation_m)
-    return Storey(values["dataset"], name.strip(), height_m, (x_m, y_m, rotation_deg), aligned)
+    return Storey(values["dataset"], name, height_m, (x_m, y_m, rotation_deg), aligned)
 
 
-def _is_number(value: Any) -> bool:
+def _is_motion(value: Any) -> bool:
+    limits = (_FARTHEST_M, _FARTHEST_M, 360.0)
+    is_triple = isinstance(value, list) and len(value) == len(limits)
+    return is_triple and all(map(_is_number, value, limits))
+
+
+def _is_number(value: Any, limit: float) -> bool:
     is_plain = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_plain and abs(value) < 1e9 and math.isfinite(value)
+    return is_plain and abs(value) <= limit

@@ -18,6 +18,8 @@ from scanplan.project import (
     dataset_list,
     export_formats,
     provenance,
+    texts,
+    user_file,
 )
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
 from scanplan.project.settings_schema import Schema
@@ -26,9 +28,6 @@ if TYPE_CHECKING:
     from scanplan.types import FilePath, Settings
 
 DEMO = "demo"
-RESERVED = "thesis"
-"""Name under results/ that the thesis's experiments have to themselves."""
-
 _PLAN = tuple(
     f"plan/{t}" for t in ("faces", "walls", "openings", "rooms", "evidence", "free", "furniture")
 )
@@ -105,28 +104,30 @@ def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | No
     Raises
     ------
     StageError
-        If two would share a folder of results, or one would take that of the thesis's experiments;
-        see `dataset_list.read_list`.
+        If two would share a folder of results, on a file system that knows no case too, or one
+        would take the place of something else; see `dataset_list.read_list`.
     """
     if given is None:
         return {DEMO: None}
     paths: dict[str, str | None] = {}
+    # not all file systems tell `Hall` from `hall`
+    taken: dict[str, str] = {}
     for name, path in _list_named(given):
-        other = paths.get(name)
+        other = taken.get(name.casefold())
         if other and provenance.identify_source(path) == provenance.identify_source(other):
             raise StageError(f"{path}: is given twice, first as {other}; leave one out")
         if other:
             fault = f"its results would be called {name} like those of {other}"
-            raise StageError(f"{path}: {fault}; rename one of them")
-        if name == RESERVED:
-            fault = f"results/{name} is the place of the thesis's experiments"
-            raise StageError(f"{path}: {fault}; rename the dataset")
+            raise StageError(f"{path}: {fault}, case of letters aside; rename one of them")
+        dataset_files.check_results_name(str(path), name)
+        taken[name.casefold()] = path
         paths[name] = path
     return paths
 
 
 def _list_named(given: FilePath | list[FilePath]) -> Iterator[tuple[str, str]]:
     for path in map(str, given if isinstance(given, list) else [given]):
+        texts.check_path(path)
         if dataset_list.is_list(path):
             yield from dataset_list.read_list(path)
         else:
@@ -306,5 +307,7 @@ def find_truth(found: Dataset) -> tuple[str, str]:
 
 
 def _truth_beside(folder: Path) -> tuple[str, str] | None:
-    faces, poses = (folder / name for name in dataset_files.TRUTH_FILES)
-    return (str(faces), str(poses)) if faces.is_file() and poses.is_file() else None
+    remedy = "put the file there, or nothing"
+    found = [user_file.find_file(folder / name, remedy) for name in dataset_files.TRUTH_FILES]
+    faces, poses = found
+    return None if faces is None or poses is None else (str(faces), str(poses))

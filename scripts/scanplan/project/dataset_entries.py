@@ -9,6 +9,7 @@ from pathlib import Path
 
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
+from scanplan.project import texts
 
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
@@ -97,12 +98,13 @@ def check_unfinished(path: Path) -> None:
 
 
 def check_file(file: Path) -> None:
-    """Refuse a file that is empty, named as Snakemake cannot, or that its recorder did not close.
+    """Refuse a file that is empty, badly named, or that its recorder did not close.
 
     Raises
     ------
     StageError
     """
+    texts.check_path(file)
     if named := _PLACEHOLDER.search(str(file)):
         raise StageError(
             f"{file}: Snakemake takes {named[0]} in a name for a placeholder; rename it"

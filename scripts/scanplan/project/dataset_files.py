@@ -17,6 +17,20 @@ from scanplan.project.dataset_entries import is_rosbag2_metadata as is_rosbag2_m
 
 SETTINGS_FILE = "dataset.yaml"
 TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
+RESERVED = "thesis"
+"""Name under results/ that the thesis's experiments have to themselves."""
+TARGETS = ("all", "comparison", RESERVED, "thesis_more")
+"""What a command may ask for beside files."""
+_TAKEN = (*TARGETS, "summary.html", "summary.parquet")
+"""What else stands under results/, or is asked for by its name."""
+_READ_FILES = {
+    (SETTINGS_FILE,): "settings of a dataset are",
+    CORRECTIONS_FILES: "corrections are",
+    TRUTH_FILES: "the truth is",
+}
+"""Files of a dataset's folder by what they hold: none is needed, so that one with nearly such a
+name would go unnoticed."""
+_WRITTEN_SUFFIXES = ("yaml", "yml", "json", "geojson", "tum")
 _BAG_SUFFIXES = (".bag", ".mcap", ".db3")
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
@@ -58,6 +72,24 @@ def dataset_name(path: FilePath) -> str:
             " rename it"
         )
     return name
+
+
+def check_results_name(place: str, name: str) -> None:
+    """Refuse a name of results that something else has.
+
+    Parameters
+    ----------
+    place : str
+        What bears the name, for the message.
+    name : str
+
+    Raises
+    ------
+    StageError
+    """
+    if name.casefold() in _TAKEN:
+        fault = f"{name} is a target of the workflow, or a file or folder of its own under results/"
+        raise StageError(f"{place}: {fault}; choose another name")
 
 
 def is_survey_file(path: FilePath) -> bool:
@@ -137,7 +169,7 @@ def list_overlooked(path: FilePath) -> list[str]:
         A line for each reason: the files, why they are not read, and the remedy.
     """
     path = Path(path)
-    return [*_note_beside(path), *_note_lone_truth(path), *_note_misnamed_settings(path)]
+    return [*_note_beside(path), *_note_lone_truth(path), *_note_misnamed(path)]
 
 
 def _note_beside(path: Path) -> list[str]:
@@ -167,25 +199,42 @@ def _note_lone_truth(path: Path) -> list[str]:
     ]
 
 
-def _note_misnamed_settings(path: Path) -> list[str]:
-    """Say which files of a folder have nearly the name of the settings' file."""
-    entries = dataset_entries.visible(path) if path.is_dir() else []
-    misnamed = [entry.name for entry in entries if _seems_settings(entry)]
+def _note_misnamed(path: Path) -> list[str]:
+    """Say which files of a folder have nearly the name of one that is read."""
+    found = [note_misnamed(path, names, what) for names, what in _READ_FILES.items()]
+    return [note for note in found if note]
+
+
+def note_misnamed(folder: Path, names: Sequence[str], what: str) -> str:
+    """Say which files of a folder have nearly one of the names that something is read from.
+
+    Parameters
+    ----------
+    folder : path
+        Or a recording, beside which there is nothing.
+    names : sequence of str
+    what : str
+        What they hold, with its verb: `corrections are`.
+
+    Returns
+    -------
+    str
+        Empty where there is none.
+    """
+    entries = dataset_entries.visible(folder) if folder.is_dir() else []
+    misnamed = [entry.name for entry in entries if _seems_one_of(entry.name, names)]
     if not misnamed:
-        return []
-    return [
-        f"{path}: {_list_as_subject(misnamed)} not used;"
-        f" settings of a dataset are read from {SETTINGS_FILE}, rename it"
-    ]
+        return ""
+    fault = f"{_list_as_subject(misnamed)} not used"
+    return f"{folder}: {fault}; {what} read from {' or '.join(names)}, rename it"
 
 
-def _seems_settings(entry: Path) -> bool:
-    stem, _, suffix = entry.name.lower().partition(".")
-    return (
-        stem == "dataset"
-        and suffix in ("yaml", "yml", "yaml.txt", "json")
-        and entry.name != SETTINGS_FILE
-    )
+def _seems_one_of(name: str, names: Sequence[str]) -> bool:
+    """Return whether a file has the stem of others, in any case, and a suffix of such a file."""
+    stem, _, suffix = name.casefold().partition(".")
+    stems = {other.partition(".")[0] for other in names}
+    seems = stem in stems and suffix.removesuffix(".txt") in _WRITTEN_SUFFIXES
+    return seems and name not in names
 
 
 def _list_as_subject(names: Sequence[str]) -> str:

@@ -4,12 +4,13 @@ Standard library only: this runs while the workflow is being parsed.
 """
 
 import csv
+import io
 from collections.abc import Iterator
 from pathlib import Path
 
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
-from scanplan.project import dataset_files
+from scanplan.project import dataset_files, texts, user_file
 
 SUFFIX = ".tsv"
 _COLUMNS = ("name", "path")
@@ -40,29 +41,34 @@ def read_list(file: FilePath) -> list[tuple[str, str]]:
     StageError
         If the file cannot be read, has no such columns or no line, or a line of it says too little.
     """
+    text = user_file.read_text(file, "give a list with the columns name and path")
     try:
-        with Path(file).open(encoding="utf-8-sig", newline="") as content:
-            datasets = list(_read_rows(file, csv.DictReader(content, delimiter="\t")))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        fault = error.strerror if isinstance(error, OSError) else "is no text in UTF-8"
-        raise StageError(f"{file}: {fault}; give a list with the columns name and path") from None
+        rows = csv.DictReader(io.StringIO(text, newline=""), delimiter="\t")
+        datasets = list(_read_rows(file, rows))
+    except csv.Error as error:
+        raise StageError(f"{file}: {error}; write a line `name<tab>path` for each") from None
     if not datasets:
         raise StageError(f"{file}: lists no dataset; write a line `name<tab>path` for each")
     return datasets
 
 
 def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str]]:
-    if "path" not in (rows.fieldnames or ()):
-        named = ", ".join(rows.fieldnames or ()) or "nothing"
+    columns = rows.fieldnames or ()
+    if "path" not in columns:
+        named = ", ".join(columns) or "nothing"
         raise StageError(
             f"{file}: its first line names {named}; name the columns {' and '.join(_COLUMNS)},"
             " separated by tabs"
         )
+    for column in _COLUMNS:
+        if (n_such := columns.count(column)) > 1:
+            raise StageError(f"{file}: names the column {column} {n_such} times; keep one of them")
     for row in rows:
         place = f"{file}: line {rows.line_num}"
         path = (row["path"] or "").strip()
         if not path:
             raise StageError(f"{place}: has no path; write one, or drop the line")
+        texts.check_path(path)
         name = (row.get("name") or "").strip()
         if name and dataset_files.dataset_name(name) != name:
             raise StageError(f"{place}: {name!r} names no results; use letters, digits, _ . -")

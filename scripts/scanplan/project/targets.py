@@ -6,12 +6,13 @@ from collections.abc import Collection, Iterable
 from pathlib import PurePath
 
 from scanplan.errors import StageError
+from scanplan.project import texts
 
 
 def check_targets(
     targets: Iterable[str], datasets: Collection[str], others: Collection[str]
 ) -> None:
-    """Refuse targets that are settings, and results of datasets that were not given.
+    """Refuse targets that are settings or no paths, and results of datasets that were not given.
 
     Parameters
     ----------
@@ -28,6 +29,7 @@ def check_targets(
         With what to write instead.
     """
     for target in map(str, targets):
+        texts.check_path(target)
         key, is_setting, value = target.partition("=")
         if is_setting and "/" not in key:
             raise StageError(

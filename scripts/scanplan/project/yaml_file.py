@@ -6,15 +6,20 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
 
 from scanplan.errors import StageError
+from scanplan.project import texts, user_file
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
+
+
+_MOST_BYTES = 2**18
+"""Four thousand corrections, or ten times all settings; PyYAML reads them in 1 to 3 s, every job
+anew."""
 
 
 class _Loader(yaml.SafeLoader):
@@ -40,6 +45,15 @@ class _Loader(yaml.SafeLoader):
             seen.add(key.value)
         return super().construct_mapping(node, deep)
 
+    def construct_scalar(self, node: yaml.ScalarNode | yaml.MappingNode) -> Any:
+        value = super().construct_scalar(node)
+        if not isinstance(value, str) or value.isascii():
+            return value
+        try:
+            return texts.join_pairs(value)
+        except UnicodeDecodeError:
+            raise _fault(f"`{value}` has half of a character, write both or none", node) from None
+
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
         if node.tag.endswith((":int", ":float")) and ":" in node.value:
             raise _fault(f"`{node.value}` would be read as minutes, to the base of 60", node)
@@ -62,10 +76,12 @@ def read_yaml(path: FilePath) -> dict[Any, Any]:
     Raises
     ------
     StageError
-        If it is no YAML or no mapping, has a duplicate key, an alias or a merge key.
+        If it is no YAML or no mapping, has a duplicate key, an alias or a merge key; see
+        `user_file.read_text`.
     """
+    text = user_file.read_text(path, "name a YAML file with settings, in UTF-8", _MOST_BYTES)
     try:
-        values = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader) or {}
+        values = yaml.load(text, _Loader) or {}
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
@@ -73,16 +89,8 @@ def read_yaml(path: FilePath) -> dict[Any, Any]:
         raise StageError(f"{path}: is not valid YAML ({fault}); mend it") from None
     except RecursionError:
         raise StageError(f"{path}: is nested too deeply for settings; mend it") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise StageError(
-            f"{path}: is not valid YAML ({error}); write it as text, in UTF-8"
-        ) from None
-    except FileNotFoundError:
-        raise StageError(f"{path}: does not exist; name a YAML file with settings") from None
-    except OSError as error:
-        raise StageError(
-            f"{path}: cannot be read ({error.strerror}); it must be a readable file"
-        ) from None
+    except yaml.YAMLError as error:
+        raise StageError(f"{path}: is not valid YAML ({error}); write it as text") from None
     if not isinstance(values, dict):
         raise StageError(
             f"{path}: holds {type(values).__name__}, expected `section: {{key: value}}`"

@@ -9,7 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from scanplan.project.dataset import RESERVED, describe_simulated
+from scanplan.project.dataset import describe_simulated
+from scanplan.project.dataset_files import RESERVED
 from scanplan.project.settings import read_own_layers, settings_of_dataset
 
 if TYPE_CHECKING:

@@ -1,0 +1,103 @@
+"""Words that a person gives, names and paths: which characters they may have, and how many.
+
+Standard library only: this runs while the workflow is being parsed.
+"""
+
+import os
+import re
+
+from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
+
+LONGEST_NAME = 80
+"""Characters of a name: more than fit into any drawing's label."""
+_LONGEST_PATH = 4095
+"""Bytes of a path that Linux takes; a Mac takes 1,023."""
+_LONGEST_PART = 255
+"""Bytes of a name in a folder, on all file systems in use."""
+_UNFIT = re.compile(
+    # controls, among them line breaks, and what ends a line or a paragraph elsewhere
+    "[\x00-\x1f\x7f-\x9f\u2028\u2029"
+    # what lets the rest of a line be read backwards
+    "\u202a-\u202e\u2066-\u2069"
+    # halves of characters, and the code points that are none
+    "\ud800-\udfff\ufdd0-\ufdef"
+    + "".join(
+        f"{chr(plane + 0xFFFE)}{chr(plane + 0xFFFF)}" for plane in range(0, 0x110000, 0x10000)
+    )
+    + "]"
+)
+
+
+def find_unfit(text: str) -> str | None:
+    """Return the first character that a line of text has no place for; None without.
+
+    Line breaks, control characters, marks that turn the direction of reading, halves of surrogate
+    pairs, and code points that are no characters, such as U+FFFF.
+    """
+    found = _UNFIT.search(text)
+    return found[0] if found else None
+
+
+def join_pairs(text: str) -> str:
+    r"""Return a text in which a character written as JSON writes it, `\ud83c\udfe0`, is one.
+
+    Raises
+    ------
+    ValueError
+        If half of such a pair stands alone.
+    """
+    return text.encode("utf-16", "surrogatepass").decode("utf-16")
+
+
+def check_text(place: str, value: object, longest: int = LONGEST_NAME) -> str:
+    """Return a line of text that a person gave, without the space around it.
+
+    Parameters
+    ----------
+    place : str
+        What the message begins with: the file and the key.
+    value : object
+    longest : int
+        Characters.
+
+    Raises
+    ------
+    StageError
+        If it is no text, has too many characters or none, or one that `find_unfit` finds.
+    """
+    text = value.strip() if isinstance(value, str) else ""
+    if not text or len(text) > longest:
+        shown = f"has {len(text)} characters" if text else f"is {value!r}"
+        limit = f"expected text of 1 to {longest} characters"
+        raise StageError(f"{place} {shown}, {limit}; put a shorter one in quotes")
+    if unfit := find_unfit(text):
+        raise StageError(f"{place} has {unfit!r}; leave out {UNFIT}")
+    return text
+
+
+UNFIT = "line breaks, control characters and what is no character"
+"""What `find_unfit` finds, in words."""
+
+
+def check_path(path: FilePath) -> None:
+    """Refuse a path that no file system takes, or that cannot be shown in a line.
+
+    Raises
+    ------
+    StageError
+    """
+    text = os.fspath(path)
+    if unfit := find_unfit(text):
+        raise StageError(f"{_shorten(text)}: has {unfit!r} in its name; rename it")
+    parts = text.split("/")
+    longest = max(parts, key=len)
+    for what, said, limit in (("name", longest, _LONGEST_PART), ("path", text, _LONGEST_PATH)):
+        n_bytes = len(os.fsencode(said))
+        if n_bytes > limit:
+            fault = f"is a {what} of {n_bytes} bytes, at most {limit} can be read"
+            raise StageError(f"{_shorten(text)}: {fault}; give a shorter one")
+
+
+def _shorten(text: str) -> str:
+    return text if len(text) <= 100 else f"{text[:60]}...{text[-30:]}"

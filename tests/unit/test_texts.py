@@ -1,0 +1,61 @@
+"""Words that a person gives: pairs that are joined, characters and lengths that are refused."""
+
+import unicodedata
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from scanplan.errors import StageError
+from scanplan.project.texts import check_path, check_text, find_unfit, join_pairs
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"])))
+def test_whatever_is_no_half_stays_when_pairs_are_joined(text):
+    halves = text.encode("utf-16-be", "surrogatepass")
+    units = [chr(int.from_bytes(halves[i : i + 2])) for i in range(0, len(halves), 2)]
+    assert join_pairs(text) == join_pairs("".join(units)) == text
+
+
+@pytest.mark.parametrize("half", ["\ud83c", "a\udfe0", "\udfe0\ud83c"])
+def test_half_of_a_pair_is_refused(half):
+    with pytest.raises(UnicodeDecodeError):
+        join_pairs(half)
+
+
+@given(st.characters())
+def test_letters_marks_numbers_and_symbols_are_fit(character):
+    is_shown = unicodedata.category(character)[0] in "LMNPS"
+    if is_shown or character == " ":
+        assert find_unfit(character) is None
+    if unicodedata.category(character) in ("Cc", "Cs", "Zl", "Zp"):
+        assert find_unfit(f"a{character}") == character
+
+
+@pytest.mark.parametrize("unfit", ["\uffff", "\U0010fffe", "\ufdd0", "\u202e", "\u2066", "\x85"])
+def test_what_is_no_character_or_turns_a_line_is_found(unfit):
+    assert find_unfit(f"hall {unfit}2") == unfit
+
+
+def test_characters_that_join_others_are_fit():
+    family, persian = "👨\u200d👩\u200d👧", "می\u200cخواهم"
+    assert find_unfit(family) is find_unfit(persian) is None
+
+
+def test_a_text_has_its_limit_in_the_line():
+    assert check_text("a.yaml: name", " Foyer ") == "Foyer"
+    assert check_text("a.yaml: name", "x" * 80) == "x" * 80
+    with pytest.raises(StageError, match=r"a\.yaml: name has 81 characters, expected .* 1 to 80"):
+        check_text("a.yaml: name", "x" * 81)
+    for empty in ("", "  ", None, 5, ["a"]):
+        with pytest.raises(StageError, match=r"a\.yaml: name is .*, expected text of 1 to 80"):
+            check_text("a.yaml: name", empty)
+
+
+@given(st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=50))
+def test_a_path_is_refused_for_what_cannot_be_shown_alone(path):
+    if find_unfit(path) is None:
+        check_path(path)
+    else:
+        with pytest.raises(StageError, match="rename it"):
+            check_path(path)
