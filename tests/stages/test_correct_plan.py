@@ -186,3 +186,30 @@ def test_reference_points_say_where_the_plan_lies(plan, caplog):
                             planning.TABLES["free"], "georeference")  # fmt: skip
     assert json.loads(note)["crs"] == "EPSG:25832"
     assert "3 reference points agree within 0.00 m" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        # the wall between the rooms, at x = 4.05, goes from y = -0.1 to 3.1
+        (
+            ("opening", [[4.05, -3], [4.05, 6]]),
+            r"reaches 2\.9 m beyond wall 5, of 3\.2 m; give a line",
+        ),
+        (("opening", [[4.05, 2], [4.05, 4]]), r"reaches 0\.9 m beyond wall 5"),
+        (("opening", [[3.6, 2.5], [4.5, 2.5]]), "runs across wall 5, not along it"),
+        (("wall", [[300, 0], [304, 0]]), r"lies 297 m beyond the plan, at most 100 m are drawn"),
+        (("wall", [[3, 1], [3, -200]]), r"lies 200 m beyond the plan"),
+    ],
+)
+def test_what_is_added_off_its_wall_or_off_the_plan_is_told(plan, entry, said):
+    element, line = entry
+    kind = {"kind": "door"} if element == "opening" else {}
+    with pytest.raises(StageError, match=said):
+        corrected(plan, {"element": element, "action": "add", "line": line, **kind})
+
+
+def test_an_opening_drawn_a_little_beyond_its_wall_is_added(plan):
+    line = [[4.05, 2.2], [4.05, 3.4]]
+    found = corrected(plan, {"element": "opening", "action": "add", "line": line, "kind": "door"})
+    assert found.openings["width_m"][-1] == pytest.approx(1.2)

@@ -1,6 +1,7 @@
 """Files of corrections: what they may say, and one line for each mistake."""
 
 import json
+import os
 
 import pytest
 
@@ -67,14 +68,41 @@ def test_geojson_says_the_same(tmp_path):
         ("{element: room, at: [1, 2], name: 5}", "name is 5, expected text of 1 to 80"),
         ("{element: room, at: [1, 2], name: ' '}", "expected text of 1 to 80"),
         ('{element: room, at: [1, 2], name: "a\\nb"}', "name has '\\n'; leave out line breaks"),
-        ("{element: room, at: [1, 2], name: '<b>x'}", "name has '<'"),
-        ("{element: room, at: [1, 2], name: 'a\\Pb'}", "name has '\\\\'"),
+        ('{element: room, at: [1, 2], name: "a\\uffff"}', "name has '\\uffff'; leave out"),
+        ('{element: room, at: [1, 2], name: "a\\u202eb"}', "name has '\\u202e'; leave out"),
+        (
+            "{element: room, at: [1, 2], name: " + "a" * 81 + "}",
+            "has 81 characters, expected text of",
+        ),
+        ("{element: wall, action: [1], at: [1, 2]}", "action of a wall is [1], expected one of"),
+        ("{element: [wall], action: keep, at: [1, 2]}", "element is ['wall'], expected one of"),
+        ("{element: opening, at: [1, 2], kind: {a: 1}}", "kind is {'a': 1}, expected one of"),
         ("{element: room, at: [1, 2], name: x, kind: door}", "has kind; to change a room takes"),
         ("{element: opening, at: [1, 2], kind: gate}", "kind is 'gate', expected one of door"),
         ("{element: opening, action: add, kind: door}", "has no line"),
-        ("{element: wall, action: add, line: [[0, 0], [0, 0]]}", "begins and ends at [0.0, 0.0]"),
+        ("{element: wall, action: add, line: [[0, 0], [0, 0]]}", "line is 0 m long, expected"),
+        (
+            "{element: wall, action: add, line: [[0, 0], [30000, 0]]}",
+            "line is 30000 m long, expected",
+        ),
+        (
+            "{element: opening, action: add, kind: door, line: [[0, 0], [1.0e+8, 0]]}",
+            "0.05 to 1000 m",
+        ),
+        ("{element: wall, action: add, line: [[0, 0], [1.0e+9, 0]]}", "in metres, up to 1e+08"),
         ("{element: wall, action: add, line: [[0, 0]]}", "expected two places"),
-        ("{element: wall, action: add, line: [[0, 0], [1, 0]], thickness_m: -1}", "above 0"),
+        (
+            "{element: wall, action: add, line: [[0, 0], [1, 0]], thickness_m: -1}",
+            "expected 0.01 to 3 m",
+        ),
+        (
+            "{element: wall, action: add, line: [[0, 0], [1, 0]], thickness_m: 1.0e-300}",
+            "0.01 to 3 m",
+        ),
+        ("{element: wall, action: add, line: [[0, 0], [1, 0]], thickness_m: 9.9}", "0.01 to 3 m"),
+        ("{element: reference_point, at: [0, 0], world: [1, 2], crs: EPSG:0}", "a code of 1024 to"),
+        ("{element: reference_point, at: [0, 0], world: [1, 2], crs: EPSG:4326}", "in degrees"),
+        ("{element: reference_point, at: [0, 0], world: [1.0e+300, 2], crs: x}", "up to 1e+08"),
         ("{element: reference_point, at: [0, 0], world: [1, 2], crs: x}", "add another"),
         ("just words", "is 'just words', expected `element: ...`"),
     ],
@@ -92,7 +120,10 @@ def test_a_file_of_something_else_is_told(tmp_path, text):
         read_corrections(written(tmp_path, text))
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"features": [{}]}', '{"features": [5]}'])
+@pytest.mark.parametrize(
+    "text",
+    ["{", "[]", "[" * 10**5, '{"features": [{}]}', '{"features": [5]}', '{"features": {"a": 1}}'],
+)
 def test_damaged_geojson_is_told(tmp_path, text):
     with pytest.raises(StageError, match="is no GeoJSON FeatureCollection"):
         read_corrections(written(tmp_path, text, "corrections.geojson"))
@@ -106,7 +137,7 @@ def test_two_entries_of_one_place_are_told(tmp_path):
 
 def test_reference_points_in_two_systems_are_told(tmp_path):
     with pytest.raises(StageError, match="several `crs`"):
-        read_corrections(written(tmp_path, GOOD.replace("EPSG:25832", "EPSG:4326", 1)))
+        read_corrections(written(tmp_path, GOOD.replace("EPSG:25832", "EPSG:25833", 1)))
 
 
 def test_one_file_of_corrections_is_used(tmp_path):
@@ -115,4 +146,45 @@ def test_one_file_of_corrections_is_used(tmp_path):
     assert find_corrections(tmp_path) == str(path)
     written(tmp_path, "{}", "corrections.geojson")
     with pytest.raises(StageError, match="keep one of the two"):
+        find_corrections(tmp_path)
+
+
+@pytest.mark.parametrize("geometry", ['"Point"', "[1, 2]", "5", "null", "true"])
+def test_a_geometry_that_is_none_is_told(tmp_path, geometry):
+    text = f'{{"features": [{{"properties": {{"element": "wall"}}, "geometry": {geometry}}}]}}'
+    with pytest.raises(StageError, match="no properties or no geometry; mend it"):
+        read_corrections(written(tmp_path, text, "corrections.geojson"))
+
+
+@pytest.mark.parametrize("name", ["{a}", "a^b", "a\\Pb", "<b>x", "50 %%c", "Lager $1", "ёж 🏠"])
+def test_a_name_may_have_any_character_of_a_line(tmp_path, name):
+    entry = json.dumps({"element": "room", "at": [1, 2], "name": name})
+    path = written(tmp_path, f"corrections:\n- {entry}\n")
+    assert [c.name for c in read_corrections(path)] == [name]
+
+
+def test_half_of_a_character_is_told_with_its_line(tmp_path):
+    path = written(tmp_path, 'corrections:\n- {element: room, at: [1, 2], name: "\\ud83c"}\n')
+    with pytest.raises(StageError, match=r"line 2, column 37: .*has half of a character"):
+        read_corrections(path)
+    feature = {"properties": {"element": "room", "name": "\ud83c"},
+               "geometry": {"type": "Point", "coordinates": [1, 2]}}  # fmt: skip
+    path = written(tmp_path, json.dumps({"features": [feature]}), "corrections.geojson")
+    with pytest.raises(StageError, match=r"name has '\\ud83c'; leave out"):
+        read_corrections(path)
+
+
+@pytest.mark.parametrize("name", ["corrections.yaml", "corrections.geojson"])
+def test_what_is_no_file_is_told(tmp_path, name):
+    path = tmp_path / name
+    path.symlink_to(tmp_path / "nowhere")
+    with pytest.raises(StageError, match=f"{name}: is a link that leads nowhere"):
+        find_corrections(tmp_path)
+    path.unlink()
+    path.mkdir()
+    with pytest.raises(StageError, match=f"{name}: is a folder, expected a file"):
+        find_corrections(tmp_path)
+    path.rmdir()
+    os.mkfifo(path)
+    with pytest.raises(StageError, match=f"{name}: is a pipe, expected a file"):
         find_corrections(tmp_path)

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
+from scanplan.project import reference_points, reference_systems, texts, user_file
 from scanplan.project.yaml_file import read_yaml
 
 if TYPE_CHECKING:
@@ -37,7 +37,12 @@ _KEYS = {
 """What may be done to an element, and the keys of such an entry."""
 _OPTIONAL = ("thickness_m",)
 _KINDS = ("door", "window", "passage")
-_NOT_IN_NAMES = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029<>{}\\^]")
+_THICKNESS_M = (0.01, 3.0)
+"""Of a wall: from a sheet of glass to a fortress."""
+_LENGTH_M = (0.05, 1000.0)
+"""Of a wall or an opening: from a pier beside a door to the longest halls there are."""
+_FARTHEST_M = 1e8
+"""Of a place: all projected systems of the Earth lie within, with a zone before the easting."""
 
 
 @dataclass(frozen=True)
@@ -84,9 +89,11 @@ def find_corrections(folder: Path) -> str | None:
     Raises
     ------
     StageError
-        If there are two.
+        If there are two, or one is no file.
     """
-    found = [folder / name for name in CORRECTIONS_FILES if (folder / name).is_file()]
+    remedy = "write the corrections there, or remove it"
+    named = [user_file.find_file(folder / name, remedy) for name in CORRECTIONS_FILES]
+    found = [path for path in named if path is not None]
     if len(found) > 1:
         raise StageError(f"{found[0]}: {found[1].name} lies beside it; keep one of the two")
     return str(found[0]) if found else None
@@ -128,20 +135,29 @@ def read_corrections(path: FilePath) -> list[Correction]:
         raise StageError(f"{path}: reference points are in several `crs`; give all in one")
     if len(points) == 1:
         raise StageError(f"{points[0].entry}: one reference point gives no direction; add another")
+    if points:
+        world_m = [point.world_m or point.at_m for point in points]
+        reference_points.check_points(
+            [point.entry for point in points], [point.at_m for point in points], world_m
+        )
     return corrections
 
 
 def _read_features(path: FilePath) -> list[Mapping[str, Any]]:
+    text = user_file.read_text(path, "write a FeatureCollection as GeoJSON")
     try:
-        collection = json.loads(Path(path).read_text(encoding="utf-8"))
-        features = collection["features"]
-        properly = all(isinstance(f["properties"], dict) and f["geometry"] for f in features)
+        features = json.loads(text)["features"]
+        properly = all(_is_feature(feature) for feature in features)
     except (ValueError, LookupError, TypeError, RecursionError) as error:
         fault = f"is no GeoJSON FeatureCollection ({error})"
         raise StageError(f"{path}: {fault}; mend it, or write corrections.yaml") from None
     if not properly:
         raise StageError(f"{path}: a feature has no properties or no geometry; mend it")
     return features
+
+
+def _is_feature(feature: Mapping[str, Any]) -> bool:
+    return isinstance(feature["properties"], dict) and isinstance(feature["geometry"], dict)
 
 
 def _of_feature(feature: Mapping[str, Any]) -> dict[str, Any]:
@@ -160,7 +176,7 @@ def _check_entry(entry: str, values: Any) -> Correction:
     if element not in elements:
         raise StageError(f"{entry}: element is {element!r}, expected one of {', '.join(elements)}")
     action = values.get("action") or ("add" if element == "reference_point" else "change")
-    if (element, action) not in _KEYS:
+    if not isinstance(action, str) or (element, action) not in _KEYS:
         known = ", ".join(a for e, a in _KEYS if e == element)
         raise StageError(f"{entry}: action of a {element} is {action!r}, expected one of {known}")
     keys = _KEYS[element, action]
@@ -178,31 +194,35 @@ def _check_entry(entry: str, values: Any) -> Correction:
         at_m=_middle(*line_m) if line_m else _check_place(entry, "at", values["at"]),
         line_m=line_m,
         kind=_check_kind(entry, values["kind"]) if "kind" in keys else "",
-        name=_check_text(entry, "name", values["name"]) if "name" in keys else "",
+        name=texts.check_text(f"{entry}: name", values["name"]) if "name" in keys else "",
         thickness_m=_check_thickness(entry, values.get("thickness_m")),
         world_m=_check_place(entry, "world", values["world"]) if "world" in keys else None,
-        crs=_check_text(entry, "crs", values["crs"]) if "crs" in keys else "",
+        crs=_check_crs(entry, values["crs"]) if "crs" in keys else "",
     )
 
 
 def _check_place(entry: str, key: str, value: Any) -> tuple[float, float]:
     if not (isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))):
-        raise StageError(f"{entry}: {key} is {value!r}, expected two numbers [x, y] in metres")
+        expected = f"expected two numbers [x, y] in metres, up to {_FARTHEST_M:g}"
+        raise StageError(f"{entry}: {key} is {value!r}, {expected}")
     return float(value[0]), float(value[1])
 
 
 def _is_number(value: Any) -> bool:
     is_plain = isinstance(value, int | float) and not isinstance(value, bool)
-    # an integer may be too large for a float
-    return is_plain and abs(value) < 1e12 and math.isfinite(value)
+    # NaN is not, an integer may be too large for a float
+    return is_plain and abs(value) <= _FARTHEST_M
 
 
 def _check_line(entry: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
     if not isinstance(value, list) or len(value) != 2:
         raise StageError(f"{entry}: line is {value!r}, expected two places [[x, y], [x, y]]")
     start_m, end_m = (_check_place(entry, "an end of line", place) for place in value)
-    if math.dist(start_m, end_m) <= 0:
-        raise StageError(f"{entry}: line begins and ends at {list(start_m)}; give two places")
+    length_m = math.dist(start_m, end_m)
+    shortest_m, longest_m = _LENGTH_M
+    if not shortest_m <= length_m <= longest_m:
+        limit = f"expected {shortest_m:g} to {longest_m:g} m"
+        raise StageError(f"{entry}: line is {length_m:g} m long, {limit}; give it in metres")
     return start_m, end_m
 
 
@@ -216,25 +236,20 @@ def _check_kind(entry: str, value: Any) -> str:
     return value
 
 
-def _check_text(entry: str, key: str, value: Any) -> str:
-    text = value.strip() if isinstance(value, str) else ""
-    longest = 80  # characters: more than fit into any drawing's label
-    if not text or len(text) > longest:
-        limit = f"expected text of 1 to {longest} characters"
-        raise StageError(f"{entry}: {key} is {value!r}, {limit}; put it in quotes")
-    if wrong := _NOT_IN_NAMES.search(text):
-        raise StageError(
-            f"{entry}: {key} has {wrong[0]!r}; leave out line breaks, control characters"
-            " and any of < > { } \\ ^"
-        )
-    return text
+def _check_crs(entry: str, value: Any) -> str:
+    crs = texts.check_text(f"{entry}: crs", value)
+    if fault := reference_systems.find_fault(crs):
+        raise StageError(f"{entry}: crs {crs} {fault}")
+    return crs
 
 
 def _check_thickness(entry: str, value: Any) -> float | None:
     if value is None:
         return None
-    if not _is_number(value) or not 0 < value < 10:
-        raise StageError(f"{entry}: thickness_m is {value!r}, expected metres above 0, below 10")
+    thinnest_m, thickest_m = _THICKNESS_M
+    if not _is_number(value) or not thinnest_m <= value <= thickest_m:
+        limit = f"expected {thinnest_m:g} to {thickest_m:g} m"
+        raise StageError(f"{entry}: thickness_m is {value!r}, {limit}; leave it out if not known")
     return float(value)
 
 

@@ -12,7 +12,8 @@ from scanplan.types import FloatArray
 
 REACH_M = 0.5
 """From a place to its wall or opening: a later run moves it less, and the next is farther."""
-_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+"""Columns of where a face, a wall or an opening begins and ends."""
 
 
 def find_nearest(rows: Sequence[Row], place: shapely.Point) -> Row | None:
@@ -37,18 +38,21 @@ def add_wall(rows: PlanRows, line_m: FloatArray, thickness_m: float | None, said
     rows.walls.append(wall)
 
 
-def add_opening(rows: PlanRows, line_m: FloatArray, kind: str, said: str) -> bool:
-    """Add an opening in the wall nearest to the middle of a line (2, 2), and cut its faces.
+def explain_misfit(wall: Row, line_m: FloatArray) -> str | None:
+    """Return why a line (2, 2) is no opening of a wall; None where it is one."""
+    start_m, along, length_m = _frame(wall)
+    reach_m = np.sort((line_m - start_m) @ along)
+    if np.diff(reach_m)[0] < np.hypot(*(line_m[1] - line_m[0])) / 2:
+        return f"runs across wall {wall['wall']}, not along it"
+    beyond_m = max(-reach_m[0], reach_m[1] - length_m)
+    if beyond_m <= REACH_M:
+        return None
+    return f"reaches {beyond_m:.1f} m beyond wall {wall['wall']}, of {length_m:.1f} m"
 
-    Returns
-    -------
-    bool
-        Whether there is such a wall.
-    """
-    wall = find_nearest(rows.walls, shapely.Point(line_m.mean(axis=0)))
-    if wall is None:
-        return False
-    start_m, along = _frame(wall)
+
+def add_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str, said: str) -> None:
+    """Add an opening in a wall where a line (2, 2) is beside it, and cut the wall's faces."""
+    start_m, along, _ = _frame(wall)
     reach_m = np.sort((line_m - start_m) @ along)
     ends_m = start_m + reach_m[:, None] * along
     half_m = max(_half_m(wall), REACH_M)
@@ -66,7 +70,6 @@ def add_opening(rows: PlanRows, line_m: FloatArray, kind: str, said: str) -> boo
     }
     _cut_faces(rows, wall, ends_m)
     rows.openings.append(opening)
-    return True
 
 
 def close_opening(rows: PlanRows, opening: Row) -> Row | None:
@@ -80,8 +83,8 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
     if wall is None:
         return None
-    _, along = _frame(wall)
-    line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in _ENDS})[0]
+    _, along, _ = _frame(wall)
+    line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in ENDS})[0]
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
     half_m = _half_m(wall)
@@ -121,10 +124,11 @@ def _cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
             rows.faces.append(face | _ends(shapely.get_coordinates(part)) | {"face": number})
 
 
-def _frame(wall: Row) -> tuple[FloatArray, FloatArray]:
-    """Return where a wall's line starts, and its direction."""
+def _frame(wall: Row) -> tuple[FloatArray, FloatArray, float]:
+    """Return where a wall's line starts, its direction, and its length in metres."""
     start_m, end_m = shapely.get_coordinates(_line(wall))
-    return start_m, (end_m - start_m) / np.hypot(*(end_m - start_m))
+    length_m = np.hypot(*(end_m - start_m))
+    return start_m, (end_m - start_m) / length_m, float(length_m)
 
 
 def _half_m(wall: Row) -> float:
@@ -138,12 +142,12 @@ def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
 
 
 def _line(row: Row) -> shapely.LineString:
-    x0_m, y0_m, x1_m, y1_m = (row[name] for name in _ENDS)
+    x0_m, y0_m, x1_m, y1_m = (row[name] for name in ENDS)
     return shapely.LineString([(x0_m, y0_m), (x1_m, y1_m)])
 
 
 def _ends(line_m: FloatArray) -> Row:
-    return dict(zip(_ENDS, line_m.ravel().tolist(), strict=True))
+    return dict(zip(ENDS, line_m.ravel().tolist(), strict=True))
 
 
 def _blank_row(schema: schemas.Schema) -> Row:

@@ -10,6 +10,7 @@ from scanplan.errors import StageError
 from scanplan.plan.corrections import added
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import Correction
+from scanplan.types import FloatArray
 
 SAID = {
     "keep": "kept by hand",
@@ -17,6 +18,10 @@ SAID = {
     "add": "added by hand",
 }
 """What column `corrected` says of an element."""
+
+
+_FARTHEST_M = 100.0
+"""From the plan to a wall that is added: a part of the building that no scan shows is nearer."""
 
 
 @dataclass
@@ -54,7 +59,8 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
     Raises
     ------
     StageError
-        If two say something of the same element, or nothing is left of the plan.
+        If two say something of the same element, what is added lies off the plan or its wall, or
+        nothing is left of the plan.
     """
     outcome = Outcome()
     matched: dict[tuple[str, int], Correction] = {}
@@ -135,9 +141,27 @@ def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
 def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
     line_m = np.array(correction.line_m)
     if correction.element == "wall":
+        _check_near(rows, correction, line_m)
         added.add_wall(rows, line_m, correction.thickness_m, SAID["add"])
-    elif not added.add_opening(rows, line_m, correction.kind, SAID["add"]):
+        outcome.n_applied += 1
+        return
+    wall = added.find_nearest(rows.walls, shapely.Point(correction.at_m))
+    if wall is None:
         where = f"no wall lies within {added.REACH_M} m of the middle of its line"
         outcome.unmatched.append(f"{correction.entry}: {where}: not applied")
         return
+    if fault := added.explain_misfit(wall, line_m):
+        remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
+        raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
+    added.add_opening(rows, wall, line_m, correction.kind, SAID["add"])
     outcome.n_applied += 1
+
+
+def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> None:
+    """Refuse a wall far from all others: the sheet would be all but empty, its scale 1:50000."""
+    faces_m = np.array([[face[end] for end in added.ENDS] for face in rows.faces]).reshape(-1, 2)
+    low_m, high_m = faces_m.min(axis=0), faces_m.max(axis=0)
+    off_m = float(np.max(np.maximum(low_m - line_m, line_m - high_m)))
+    if off_m > _FARTHEST_M:
+        fault = f"the wall lies {off_m:.0f} m beyond the plan, at most {_FARTHEST_M:.0f} m are"
+        raise StageError(f"{correction.entry}: {fault} drawn; give `line` in metres of the map")
