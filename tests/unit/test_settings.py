@@ -19,7 +19,7 @@ from scanplan.project.settings import (
     settings_of_run,
 )
 from scanplan.project.settings_check import COMMAND_LINE, check_settings
-from scanplan.project.settings_schema import type_texts
+from scanplan.project.settings_schema import iterate_keys, type_texts
 from scanplan.project.yaml_file import read_yaml
 
 
@@ -199,6 +199,71 @@ def test_a_fault_names_file_key_value_and_limit(defaults, schema, tmp_path, text
 )
 def test_text_on_the_command_line_is_what_a_file_would_give(given, read, schema):
     assert type_texts(given, schema) == read
+
+
+EXPORT = "advanced: {plan: {export: %s}}"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (EXPORT % f"{{author: {'a' * 201}}}", "export.author: has 201 characters, at most 200"),
+        (EXPORT % f"{{project: {'a' * 10**5}}}", "has 100000 characters, at most 200; write fewer"),
+        (EXPORT % '{author: "a\\nb"}', r"export.author: has '\n'; leave out line breaks"),
+        (EXPORT % '{organisation: "a\\uffff"}', r"has '\uffff'; leave out"),
+        (EXPORT % '{storey: "\\ud83c"}', r"`\ud83c` has half of a character"),
+        (EXPORT % "{site: {crs: EPSG:0}}", "site.crs: is 'EPSG:0': expected a code of 1024"),
+        (EXPORT % f"{{site: {{crs: EPSG:{'9' * 20}}}}}", "expected a code of 1024 to 32767"),
+        (EXPORT % "{site: {crs: EPSG:4326}}", "is a system in degrees; give a projected one"),
+        (EXPORT % "{site: {east_m: 1.0e+300}}", "site.east_m: 1e+300 is greater than the maximum"),
+        (EXPORT % "{site: {height_m: -1.0e+9}}", "is less than the minimum of -10000"),
+        (f"input: {{base_frame: {'a' * 201}}}", "input.base_frame: has 201 characters"),
+        ("seed: 18446744073709551616", "seed: 18446744073709551616 is greater than the maximum"),
+        (f"thesis: {{seeds: {[*range(101)]}}}", "has 101 entries, at most 100"),
+        ("advanced: {jobs: {chunk_gb: 1.0e-300}}", "chunk_gb: 1e-300 is less than the minimum"),
+        (f"simulate: {{building: {'a' * 5000}}}", "is a name of 5000 bytes, at most 255"),
+        ('simulate: {building: "a\\0b"}', r"has '\x00' in its name; rename it"),
+        ("\n".join(f"k{i}: 1" for i in range(20_000)), "unknown key k0, k1, k10, k100, k1000"),
+    ],
+)
+def test_what_is_written_has_limits(defaults, schema, tmp_path, text, said):
+    own = tmp_path / "dataset.yaml"
+    own.write_text(text)
+    with pytest.raises(StageError) as caught:
+        settings_of_dataset(defaults, read_own_layers(own), schema)
+    assert said in str(caught.value) and str(own) in str(caught.value)
+
+
+def test_every_value_has_limits(schema):
+    """Of numbers at both ends, of texts and lists in their length."""
+
+    def unbounded(node):
+        kinds = [node, *node.get("anyOf", []), *node.get("oneOf", [])]
+        for kind in kinds:
+            types = kind.get("type", ())
+            types = {types} if isinstance(types, str) else set(types)
+            ends = {"minimum", "exclusiveMinimum"}, {"maximum", "exclusiveMaximum"}
+            if types & {"number", "integer"} and not all(end & kind.keys() for end in ends):
+                yield "number"
+            is_short = {"enum", "maxLength"} & kind.keys() or kind.get("format") in ("path", "crs")
+            if "string" in types and not is_short and not kind.get("pattern", "").endswith("$"):
+                yield "text"
+            if "array" in types:
+                yield from unbounded(kind["items"])
+                if "maxItems" not in kind and not kind.get("uniqueItems"):
+                    yield "list"
+
+    found = {key: list(unbounded(node)) for key, node in iterate_keys(schema)}
+    of_paths = ("dataset", "replace")  # each is held against the file system, or a run's names
+    assert {key for key, faults in found.items() if faults} <= set(of_paths)
+
+
+def test_a_pair_on_the_command_line_is_one_character(schema):
+    given = {"advanced": {"plan": {"export": {"author": "\ud83c\udfe0", "storey": "\ud83c"}}}}
+    read = type_texts(given, schema)["advanced"]["plan"]["export"]
+    assert read == {"author": "🏠", "storey": "\ud83c"}
+    with pytest.raises(StageError, match=r"storey: has '.ud83c'; leave out"):
+        check_settings({"advanced": {"plan": {"export": read}}}, schema, COMMAND_LINE)
 
 
 def test_text_for_a_number_is_refused(defaults, schema):

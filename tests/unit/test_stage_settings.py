@@ -13,6 +13,7 @@ from helpers.default_settings import SCHEMA, SETTINGS
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
 from order_scans import order_scans
+from scanplan.errors import StageError
 from scanplan.extraction.extractors import EXTRACTORS
 from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import planning
@@ -213,3 +214,10 @@ def test_nothing_heavy_is_imported_while_the_workflow_is_parsed(project_root):
     code += "sys.exit(bool({'numpy', 'pandas', 'scipy'} & set(sys.modules)))"
     run = subprocess.run([sys.executable, "-c", code], cwd=project_root / "scripts", check=False)
     assert run.returncode == 0
+
+
+def test_a_stage_has_no_more_jobs_than_can_be_run():
+    assert stage_settings.count_chunks("d", 0.1, 4.0) == 1
+    assert stage_settings.count_chunks("d", 4000.0, 4.0) == 1000
+    with pytest.raises(StageError, match=r"advanced\.jobs\.chunk_gb: 4 GB .* 1,001 jobs"):
+        stage_settings.count_chunks("d", 4004.0, 4.0)

@@ -220,7 +220,7 @@ def recorded_gb(name):
 def n_chunks(name):
     """Into how many jobs a stage is divided that treats scans one by one."""
     chunk_gb = DATASETS[name].settings["advanced"]["jobs"]["chunk_gb"]
-    return max(1, int(recorded_gb(name) / chunk_gb))
+    return or_end(stage_settings.count_chunks, name, recorded_gb(name), chunk_gb)
 
 
 def chunks_of(name):

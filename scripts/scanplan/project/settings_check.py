@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
-from jsonschema import Draft202012Validator, ValidationError, validators
+from jsonschema import Draft202012Validator, FormatChecker, ValidationError, validators
 
-from scanplan.errors import StageError
+from scanplan.errors import MOST_NAMED, StageError
+from scanplan.project import reference_systems, texts
 from scanplan.project.renamed_keys import explain_old_keys
 from scanplan.project.settings_schema import Schema, iterate_keys
 
@@ -28,6 +29,7 @@ MANUAL = "config/settings.md explains every key"
 # JSON knows no whole numbers and takes 5.0 for one; range() and a schema's reader do not
 _WHOLE = Draft202012Validator.TYPE_CHECKER.redefine("integer", lambda _, value: type(value) is int)
 _Validator = validators.extend(Draft202012Validator, type_checker=_WHOLE)
+_FORMATS = FormatChecker(formats=())
 _CODE_KEY = "__use_yte__"
 
 
@@ -55,14 +57,35 @@ def check_settings(settings: Settings, schema: Schema, origin: str) -> None:
     given = [key for key, _ in iterate_leaves(settings)]
     if old := explain_old_keys(given, [key for key, _ in iterate_keys(schema)]):
         raise StageError(f"{origin}: {old}; {MANUAL}")
-    faults = sorted(
-        _Validator(schema).iter_errors(settings), key=lambda e: (str(e.path), e.message)
-    )
+    validator = _Validator(schema, format_checker=_FORMATS)
+    faults = sorted(validator.iter_errors(settings), key=lambda e: (str(e.path), e.message))
     if faults:
         raise StageError(f"{origin}: {_explain(faults[0], origin)}; {MANUAL}")
     for key, value in iterate_leaves(settings):
         if not _is_finite(value):
             raise StageError(f"{origin}: {key}: {value} is no finite number; {MANUAL}")
+
+
+@_FORMATS.checks("line", raises=ValueError)
+def _is_line(value: object) -> bool:
+    """Return whether a text can stand in a line of a drawing; raise with what cannot."""
+    if isinstance(value, str) and (unfit := texts.find_unfit(value)):
+        raise ValueError(f"has {unfit!r}; leave out {texts.UNFIT}")
+    return True
+
+
+@_FORMATS.checks("path", raises=StageError)
+def _is_path(value: object) -> bool:
+    if isinstance(value, str):
+        texts.check_path(value)
+    return True
+
+
+@_FORMATS.checks("crs", raises=ValueError)
+def _is_reference_system(value: object) -> bool:
+    if isinstance(value, str) and (fault := reference_systems.find_fault(value)):
+        raise ValueError(f"is {value!r}: {fault}")
+    return True
 
 
 def _is_finite(value: Any) -> bool:
@@ -121,7 +144,7 @@ def _explain(fault: ValidationError, origin: str) -> str:
     value: Any = fault.instance
     if fault.validator == "additionalProperties":
         known = ", ".join(node["properties"])
-        extra = sorted(map(str, set(value) - set(node["properties"])))
+        extra = sorted(map(str, set(value) - set(node["properties"])))[:MOST_NAMED]
         meant = [near for name in extra for near in get_close_matches(name, node["properties"], 1)]
         ask = f" (did you mean {', '.join(meant)}?)" if meant else ""
         section, dot, below = extra[0].partition(".")
@@ -133,6 +156,11 @@ def _explain(fault: ValidationError, origin: str) -> str:
         return f"{key}: is {value!r}, expected keys with values below it; {remedy}"
     if fault.validator == "pattern" and "x-unit" in node:
         return f"{key}: is {value!r}, expected: {node['x-unit']}"
+    if fault.validator == "format":
+        return f"{key}: {fault.cause}"
+    if fault.validator in ("maxLength", "maxItems"):
+        unit = "characters" if isinstance(value, str) else "entries"
+        return f"{key}: has {len(value)} {unit}, at most {fault.validator_value}; write fewer"
     if fault.validator in ("anyOf", "oneOf"):
         numeral = origin == COMMAND_LINE and isinstance(value, (int, float))
         remedy = f" (a name of digits wants to be in a list: --config '{key}=[\"NAME\"]')"

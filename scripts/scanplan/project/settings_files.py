@@ -129,6 +129,8 @@ def _format_limits(node: Schema) -> str:
     limits = node.get("items", {}) | node
     low, high = limits.get("minimum"), limits.get("maximum")
     parts = [node.get("x-unit")]
+    if "maxLength" in node and (low, high) == (None, None):
+        parts.append(f"to {node['maxLength']} characters")
     if low is not None and high is not None:
         parts.append(f"{low} to {high}")
     else:

@@ -6,10 +6,13 @@ No heavy imports: this runs whenever the workflow is parsed.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
+
+from scanplan.project import texts
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
@@ -82,6 +85,9 @@ def type_texts(values: Any, node: Schema) -> Any:
         return [type_texts(value, items) for value in values]
     if not isinstance(values, str):
         return values
+    # one half alone stays, and is refused where the text is checked
+    with suppress(ValueError):
+        values = texts.join_pairs(values)
     allowed = {name for kind in kinds for name in _list_types(kind)}
     return _type_text(values, allowed)
 

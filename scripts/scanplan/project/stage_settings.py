@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from scanplan.errors import StageError
 from scanplan.project.settings import merge_settings
 from scanplan.project.settings_schema import ADVANCED
 
@@ -52,7 +53,25 @@ _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
 _ASSUMED = ("assumed_thickness_m", "assumed_height_m")
 _OF_FILES = ("formats", "author", "organisation", "site", "cloud")
 """What the drawings do not depend on."""
+_MOST_CHUNKS = 1000
+"""Jobs of one stage: a recording of 4,000 GB has as many by default, and no cluster more nodes."""
 _OF_THE_WORKFLOW = ("building", "recording")
+
+
+def count_chunks(name: str, recorded_gb: float, chunk_gb: float) -> int:
+    """Return into how many jobs a stage of a dataset is divided.
+
+    Raises
+    ------
+    StageError
+        If they are more than a run can have.
+    """
+    n_chunks = max(1, int(recorded_gb / chunk_gb))
+    if n_chunks > _MOST_CHUNKS:
+        fault = f"{chunk_gb:g} GB a job make {n_chunks:,} jobs of a stage of {name}"
+        limit = f"at most {_MOST_CHUNKS:,} can be run"
+        raise StageError(f"advanced.jobs.chunk_gb: {fault}, {limit}; give more")
+    return n_chunks
 
 
 def select_section(settings: Settings, *keys: str) -> Any:
