@@ -7,6 +7,7 @@ import pytest
 import shapely
 from ezdxf.addons.drawing import Frontend, RenderContext
 from ezdxf.addons.drawing.matplotlib import MatplotlibBackend
+from ezdxf.tools.text import caret_decode
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -14,6 +15,7 @@ from helpers import floorplan_making
 from helpers.floorplan_making import FOOTPRINT_M2, bare, plan
 from scanplan.exports import dxf
 from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.styles import LAYERS
 from scanplan.exports.sheet.title import SheetFacts
@@ -31,6 +33,11 @@ def outlines(document, layer):
 
 def attributes(insert):
     return {attribute.dxf.tag: attribute.dxf.text for attribute in insert.attribs}
+
+
+def read_text(entity):
+    """What a CAD program shows of a text."""
+    return ezdxf.decode_dxf_unicode(entity.plain_text())
 
 
 def room_stamps(document):
@@ -273,16 +280,34 @@ def test_extent_and_view_are_those_of_the_plan():
     assert port.dxf.center.isclose((3.05, 1.5), abs_tol=0.05)
 
 
-@pytest.mark.parametrize("name", ["a\n  0\nLINE\n", "%%d ^J \\U+0041", "\\P{\\fArial;x}", "<b>&"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "a\n  0\nLINE\n",
+        "%%d ^J \\U+0041",
+        "\\P{\\fArial;x}",
+        "<b>&",
+        "^^ %%%c% 100%",
+        "\\\\M+1A2B4 \\U+005C",
+        "{a} ёж\\",
+    ],
+)
 def test_names_are_letters_and_no_commands(name):
     rooms = floorplan_making.rooms() | {"name": np.array([name, ""], object)}
     drawn = replace(plan(rooms=rooms), name=name)
     document = reopened(drawn, facts=SheetFacts(project=name, storey=name))
     other = reopened(plan())
     assert len(document.modelspace()) == len(other.modelspace())
+    shown = clean_text(name)
     (title,) = document.layout("Sheet").query('INSERT[name=="TITLE-BLOCK"]')
-    text = attributes(title)["PROJECT"]
-    assert not {"\n", "\\"} & set(text) and "%%" not in text and "^J" not in text
+    assert [read_text(attribute) for attribute in title.attribs].count(shown) == 3
+    named = [a for stamp in room_stamps(document) for a in stamp.attribs if a.dxf.tag == "NAME"]
+    words = document.blocks.get("ROOM-STAMP-0").query("TEXT")
+    assert shown in map(read_text, named) and shown in map(read_text, words)
+    outlines = document.modelspace().query("LWPOLYLINE")
+    facts = [facts_of(outline) for outline in outlines if outline.has_xdata("SCANPLAN")]
+    stated = [str(fact["name"]) for fact in facts if "name" in fact]
+    assert shown in [ezdxf.decode_dxf_unicode(caret_decode(name)) for name in stated]
 
 
 def rendered(document, layout):

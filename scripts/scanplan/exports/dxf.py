@@ -1,5 +1,6 @@
 """The sheet of a plan as DXF, for CAD programs."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -286,13 +287,13 @@ def _add_word_attribute(insert: Insert, tag: str, word: Word, factor: float, per
 def _attach_facts(entity: DXFGraphic, facts: Facts) -> None:
     """Attach what is known of an element as extended data: names, each with its value.
 
-    A string of extended data has at most 255 bytes.
+    A string of extended data has at most 255 bytes; of a longer one the end is left out.
     """
     tags: list[tuple[int, str | float | int]] = []
     for name, value in facts.items():
         tags.append((1000, name))
         if isinstance(value, str):
-            tags.append((1000, clean_text(value).encode()[:250].decode(errors="ignore")))
+            tags.append((1000, _escape(clean_text(value)).encode()[:255].decode(errors="ignore")))
         elif isinstance(value, float):
             tags.append((1040, value))
         else:
@@ -308,5 +309,14 @@ def _format_fact(value: str | float | None) -> str:
 
 
 def _plain_text(text: str) -> str:
-    """Return a text in which no character is a command of CAD programs."""
-    return clean_text(text).replace("\\", "/").replace("%%", "% %").replace("^", "^ ")
+    """Return a text as it is written where CAD programs would take parts of it for commands.
+
+    What such programs show, and ezdxf reads, is the text again: `%%c` would be a sign for
+    diameters, and three percent signs are one.
+    """
+    return re.sub("%{2,}", lambda found: 3 * found[0], _escape(clean_text(text)))
+
+
+def _escape(text: str) -> str:
+    r"""Return a string as DXF has it: `^J` would be a line break, `\U+0041` a letter."""
+    return re.sub(r"\\(?=[UM]\+)", r"\\U+005C", text.replace("^", "^ "))

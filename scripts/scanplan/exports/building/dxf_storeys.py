@@ -16,7 +16,7 @@ from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.styles import LAYERS
 
-_NOT_IN_NAMES = r"""[<>/\\":;?*|,=`']"""
+_NOT_IN_NAMES = r"""[<>/\\":;?*|,=`'^]"""
 
 
 def format_building_dxf(
