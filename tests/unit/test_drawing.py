@@ -1,6 +1,10 @@
 import io
+import os
 import re
+import subprocess
+import sys
 from dataclasses import replace
+from functools import partial
 from xml.etree import ElementTree
 
 import numpy as np
@@ -141,3 +145,37 @@ def test_a_line_of_a_png_is_as_long_as_it_was_measured():
         _, columns = np.nonzero(np.asarray(picture.convert("L")) < 128)
     drawn_mm = np.ptp(columns) * inch_mm / 150
     assert drawn_mm == pytest.approx(lettering.measure_width_mm(text, 1.8), abs=1.0)
+
+
+_DRAWN = """
+import hashlib
+from helpers.floorplan_making import plan
+from scanplan.exports import drawing, svg
+from scanplan.exports.sheet import composition
+from scanplan.stage import figure_files
+sheet = composition.compose_sheet(plan())
+figure = drawing.draw_sheet(sheet)
+for made in (figure_files.format_pdf([figure]), figure_files.format_png(figure),
+             figure_files.format_svg(figure).encode(), svg.format_svg_sheet(sheet).encode()):
+    print(hashlib.sha256(made).hexdigest())
+"""
+
+
+def test_a_matplotlibrc_of_the_user_changes_nothing(tmp_path, project_root):
+    path = os.pathsep.join(str(project_root / folder) for folder in ("scripts", "tests"))
+    environ = {"PYTHONPATH": path, "HOME": str(tmp_path), "MPLBACKEND": "agg"}
+    run = partial(
+        subprocess.run,
+        [sys.executable, "-W", "ignore", "-c", _DRAWN],
+        cwd=tmp_path,
+        env=environ,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    ours = run().stdout
+    (tmp_path / "matplotlibrc").write_text(
+        "savefig.bbox: tight\nsavefig.dpi: 50\nfigure.dpi: 33\nfont.size: 30\nlines.linewidth: 9\n"
+        "axes.facecolor: red\npdf.compression: 0\nsvg.fonttype: none\ntext.hinting: native\n"
+    )
+    assert len(ours.split()) == 4 and run().stdout == ours

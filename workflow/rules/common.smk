@@ -45,6 +45,7 @@ from scanplan.project.provenance import (
     discard_lone_note,
     end_results,
 )
+from scanplan.project.run.foreign_settings import keep_figures_ours
 from scanplan.project.run.terminal import tell
 from scanplan.project.settings import (
     Layer,
@@ -59,6 +60,8 @@ from scanplan.project.targets import check_targets
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
 
+if not IS_MODULE:
+    keep_figures_ours(os.environ)
 SCHEMA = read_schema(f"{PROJECT}/workflow/schemas/config.schema.yaml")
 METHODS = list_choices(SCHEMA, "plan", "method")
 EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")

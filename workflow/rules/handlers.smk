@@ -3,7 +3,13 @@ import os
 from pathlib import Path
 
 from snakemake.settings.enums import Quietness
-from scanplan.project.run import console, run_lock, run_outcome, slurm_jobs
+from scanplan.project.run import (
+    console,
+    foreign_settings,
+    run_lock,
+    run_outcome,
+    slurm_jobs,
+)
 
 THIS_RUN = run_lock.FolderRun()
 CONSOLE = console.open_console(GIVEN)
@@ -88,6 +94,7 @@ def tell_results():
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process and not IS_MODULE:
     or_end(run_lock.check_places, GIVEN)
+    or_end(foreign_settings.check_foreign_settings, os.environ)
     or_end(run_lock.lock_folder).close()
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import matplotlib
 from matplotlib.figure import Figure
 
+# whatever a matplotlibrc of the user's says: a margin that it cuts off changes the sheet's scale
+matplotlib.rcdefaults()
 # it logs every table that it leaves out of a font
 logging.getLogger("fontTools").setLevel(logging.WARNING)
 
