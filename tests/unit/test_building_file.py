@@ -35,6 +35,18 @@ def test_storeys_are_read_as_they_stand(tmp_path):
     ]
 
 
+@pytest.mark.parametrize(
+    ("name", "results"), [("A/B", "A_B"), ("hall.bag", "hall.bag"), ("../x 2", None), (".", None)]
+)
+def test_results_are_named_by_all_of_the_building_s_name(tmp_path, name, results):
+    path = written(tmp_path, GOOD.replace("Town hall", f"'{name}'"))
+    if results is None:
+        with pytest.raises(StageError, match="no name for results can be made of it"):
+            read_building(path)
+    else:
+        assert read_building(path).name == results
+
+
 def test_a_storey_without_a_place_is_told_unaligned(tmp_path):
     loose = GOOD.replace(", building_from_map: [1.5, -2, 90]", "")
     (note,) = read_building(written(tmp_path, loose)).note_unaligned()

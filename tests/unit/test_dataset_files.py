@@ -146,64 +146,6 @@ def test_refuses_what_is_missing_or_no_recording(tmp_path):
         dataset_files.find_files(put(tmp_path / "a.bag.active"))
 
 
-def test_nothing_of_a_whole_dataset_is_overlooked(tmp_path):
-    for name in ("a.bag", "dataset.yaml", "truth.geojson", "truth_poses.tum", "notes.yaml"):
-        put(tmp_path / name)
-    assert dataset_files.list_overlooked(tmp_path) == []
-    assert dataset_files.list_overlooked(put(tmp_path / "alone" / "a.bag")) == []
-
-
-def test_what_stands_beside_a_single_recording_is_told(tmp_path):
-    bag = put(tmp_path / "a.bag")
-    (
-        put(tmp_path / "truth.geojson"),
-        put(tmp_path / "truth_poses.tum"),
-        put(tmp_path / "dataset.yaml"),
-    )
-    (note,) = dataset_files.list_overlooked(bag)
-    assert "dataset.yaml, truth.geojson and truth_poses.tum are not used" in note
-    assert note.endswith(f"give the folder {tmp_path} as the dataset")
-    put(tmp_path / "run" / "metadata.yaml", METADATA), put(tmp_path / "run" / "x_0.mcap")
-    (note,) = dataset_files.list_overlooked(tmp_path / "run")
-    assert "the dataset is run alone" in note
-
-
-@pytest.mark.parametrize(("there", "missing"), [(0, 1), (1, 0)])
-def test_half_a_truth_is_told(tmp_path, there, missing):
-    put(tmp_path / "a.bag")
-    put(tmp_path / dataset_files.TRUTH_FILES[there])
-    (note,) = dataset_files.list_overlooked(tmp_path)
-    assert note.startswith(f"{tmp_path / dataset_files.TRUTH_FILES[there]}: is not used")
-    assert f"{dataset_files.TRUTH_FILES[missing]} is missing" in note
-
-
-@pytest.mark.parametrize(
-    ("name", "read"),
-    [
-        *((name, "settings of a dataset are read from dataset.yaml") for name in (
-            "dataset.yml", "Dataset.yaml", "dataset.yaml.txt", "dataset.json")),
-        *((name, "corrections are read from corrections.yaml or corrections.geojson") for name in (
-            "corrections.yml", "Corrections.yaml", "corrections.json", "CORRECTIONS.GEOJSON",
-            "corrections.yaml.txt")),
-        *((name, "the truth is read from truth.geojson or truth_poses.tum") for name in (
-            "Truth.geojson", "truth.json", "truth_poses.tum.txt")),
-    ],
-)  # fmt: skip
-def test_files_of_nearly_a_name_that_is_read_are_told(tmp_path, name, read):
-    put(tmp_path / "a.bag")
-    put(tmp_path / name)
-    (note,) = dataset_files.list_overlooked(tmp_path)
-    assert note == f"{tmp_path}: {name} is not used; {read}, rename it"
-
-
-def test_links_and_folders_of_nearly_a_name_are_told(tmp_path):
-    put(tmp_path / "a.bag")
-    (tmp_path / "corrections.yml").symlink_to("nowhere")
-    (tmp_path / "dataset.yml").mkdir()
-    settings, corrections = dataset_files.list_overlooked(tmp_path)
-    assert "dataset.yml is not used" in settings and "corrections.yml is" in corrections
-
-
 @pytest.mark.parametrize("name", ["run\n2.bag", "\x1b[31mrun.bag", "a\u202eb.bag", "run\udcff.bag"])
 def test_a_recording_whose_name_cannot_be_shown_is_refused(tmp_path, name):
     put(tmp_path / name)

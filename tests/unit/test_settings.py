@@ -148,6 +148,10 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
             "plan: {method: hull}\nplan: {}",
             "is not valid YAML (line 2, column 1: duplicate key `plan`",
         ),
+        (
+            "poses: {keep_every: 010}",
+            "column 21: `010` would be read to the base of 8, leave the 0",
+        ),
         ("simulate: {seed: 2024-02-30}", "line 1, column 18: `2024-02-30` is no timestamp"),
         ("poses: {keep_every: !!int two}", "line 1, column 21: `two` is no int"),
         ("poses: !!map two", "is not valid YAML (line 1, column 8: expected a mapping"),
@@ -402,7 +406,7 @@ def test_a_number_of_many_digits_is_not_shown_whole(tmp_path, defaults, schema, 
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("yes", True), ("010", 8), ("1e3", "1e3"), ("0.5", 0.5), ("null", None)],
+    [("yes", True), ("0x10", 16), ("1e3", "1e3"), ("0.5", 0.5), ("null", None)],
 )
 def test_scalars_are_read_as_snakemake_reads_them(tmp_path, text, value):
     """By YAML 1.1; a file that both read means the same to both."""

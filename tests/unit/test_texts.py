@@ -47,8 +47,11 @@ def test_a_text_has_its_limit_in_the_line():
     assert check_text("a.yaml: name", "x" * 80) == "x" * 80
     with pytest.raises(StageError, match=r"a\.yaml: name has 81 characters, expected .* 1 to 80"):
         check_text("a.yaml: name", "x" * 81)
-    for empty in ("", "  ", None, 5, ["a"]):
-        with pytest.raises(StageError, match=r"a\.yaml: name is .*, expected text of 1 to 80"):
+    for other in (None, 5, ["a"], False):
+        with pytest.raises(StageError, match=r"name is .*, expected text of 1 to 80.* in quotes"):
+            check_text("a.yaml: name", other)
+    for empty in ("", "  ", "\u200b", "\u200d\u00ad"):
+        with pytest.raises(StageError, match="name shows nothing; write letters"):
             check_text("a.yaml: name", empty)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files, texts, user_file
+from scanplan.project import dataset_files, overlooked_files, texts, user_file
 from scanplan.project.yaml_file import read_yaml
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def list_overlooked(datasets: Mapping[str, FilePath | None]) -> list[str]:
     folder = _find_folder(datasets)
     if folder is None:
         return []
-    note = dataset_files.note_misnamed(folder, (BUILDING_FILE,), "storeys are")
+    note = overlooked_files.note_misnamed(folder, (BUILDING_FILE,), "storeys are")
     return [note] if note else []
 
 
@@ -146,7 +146,7 @@ def read_building(path: FilePath) -> Building:
             raise StageError(f"{path}: dataset {storey.dataset} is two storeys; leave one out")
     _check_elevations(path, storeys)
     given_name = texts.check_text(f"{path}: name", values.get("name", "building"))
-    name = dataset_files.dataset_name(given_name)
+    name = dataset_files.name_results(f"{path}: name {given_name}", given_name)
     dataset_files.check_results_name(str(path), name)
     return Building(name, storeys)
 

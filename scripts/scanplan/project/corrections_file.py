@@ -6,15 +6,15 @@ before it has begun.
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import reference_points, reference_systems, texts, user_file
+from scanplan.project.corrections_geojson import read_features
 from scanplan.project.yaml_file import read_yaml
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def read_entries(path: FilePath) -> list[dict[str, Any]]:
         If the file is damaged, or has no list of entries.
     """
     if Path(path).suffix == ".geojson":
-        return [_of_feature(feature) for feature in _read_features(path)]
+        return read_features(path)
     values = read_yaml(path)
     entries = values.get("corrections")
     if set(values) != {"corrections"} or not isinstance(entries, list):
@@ -141,31 +141,6 @@ def read_corrections(path: FilePath) -> list[Correction]:
             [point.entry for point in points], [point.at_m for point in points], world_m
         )
     return corrections
-
-
-def _read_features(path: FilePath) -> list[Mapping[str, Any]]:
-    text = user_file.read_text(path, "write a FeatureCollection as GeoJSON")
-    try:
-        features = json.loads(text)["features"]
-        properly = all(_is_feature(feature) for feature in features)
-    except (ValueError, LookupError, TypeError, RecursionError) as error:
-        fault = f"is no GeoJSON FeatureCollection ({error})"
-        raise StageError(f"{path}: {fault}; mend it, or write corrections.yaml") from None
-    if not properly:
-        raise StageError(f"{path}: a feature has no properties or no geometry; mend it")
-    return features
-
-
-def _is_feature(feature: Mapping[str, Any]) -> bool:
-    return isinstance(feature["properties"], dict) and isinstance(feature["geometry"], dict)
-
-
-def _of_feature(feature: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entry that a feature stands for: a point is a place, a line what is added."""
-    properties = {k: v for k, v in feature["properties"].items() if v is not None}
-    geometry = feature["geometry"]
-    key = "at" if geometry.get("type") == "Point" else "line"
-    return {**properties, key: geometry.get("coordinates")}
 
 
 def _check_entry(entry: str, values: Any) -> Correction:

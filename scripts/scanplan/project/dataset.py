@@ -17,6 +17,7 @@ from scanplan.project import (
     dataset_files,
     dataset_list,
     export_formats,
+    overlooked_files,
     provenance,
     texts,
     user_file,
@@ -182,7 +183,7 @@ def describe_dataset(
         found = describe_simulated(name, settings, drawings)
     else:
         recordings = tuple(dataset_files.find_files(path))
-        notes = tuple(dataset_files.list_overlooked(path))
+        notes = tuple(overlooked_files.list_overlooked(path))
         corrections = _read_corrections(Path(path))
         truth = _truth_beside(Path(path))
         found = Dataset(name, settings, recordings, truth, notes=notes, corrections=corrections)
@@ -194,8 +195,8 @@ def _read_own_settings(path: FilePath | None) -> list[Layer]:
         return []
     if not dataset_files.is_survey_file(path):
         return read_own_layers(Path(path, dataset_files.SETTINGS_FILE))
-    if not Path(path).is_file():
-        remedy = "give a YAML file with a section `simulate`, a folder or a recording"
+    remedy = "give a YAML file with a section `simulate`, a folder or a recording"
+    if user_file.find_file(path, remedy) is None:
         raise StageError(f"{path}: does not exist; {remedy}")
     if dataset_files.is_rosbag2_metadata(path):
         remedy = f"give its folder as the dataset, {Path(path).parent}"

@@ -3,6 +3,7 @@
 Standard library only: this runs while the workflow is being parsed.
 """
 
+import io
 import os
 import re
 from pathlib import Path
@@ -20,7 +21,11 @@ _CLOUD_SUFFIXES = (".pcd", ".ply")
 
 def is_rosbag2_metadata(file: FilePath) -> bool:
     """Return whether a file is the description that stands in every rosbag2 folder."""
-    return os.access(file, os.R_OK) and b"rosbag2_bagfile_information" in Path(file).read_bytes()
+    if not os.access(file, os.R_OK):
+        return False
+    with Path(file).open("rb") as content:
+        # its first key: a file of any size may have the name
+        return b"rosbag2_bagfile_information" in content.read(io.DEFAULT_BUFFER_SIZE)
 
 
 def visible(folder: Path) -> list[Path]:

@@ -68,9 +68,9 @@ def check_settings(settings: Settings, schema: Schema, origin: str) -> None:
 
 @_FORMATS.checks("line", raises=ValueError)
 def _is_line(value: object) -> bool:
-    """Return whether a text can stand in a line of a drawing; raise with what cannot."""
-    if isinstance(value, str) and (unfit := texts.find_unfit(value)):
-        raise ValueError(f"has {unfit!r}; leave out {texts.UNFIT}")
+    """Return whether a text can stand in a line of a drawing; raise with why not."""
+    if isinstance(value, str) and (fault := texts.explain_unfit(value)):
+        raise ValueError(fault)
     return True
 
 

@@ -50,6 +50,15 @@ def join_pairs(text: str) -> str:
     return text.encode("utf-16", "surrogatepass").decode("utf-16")
 
 
+def explain_unfit(text: str) -> str | None:
+    """Return why a text can stand in no line of a drawing, with the remedy; None where it can."""
+    if unfit := find_unfit(text):
+        return f"has {unfit!r}; leave out line breaks, control characters and what is no character"
+    if not any(c.isprintable() and not c.isspace() for c in text):
+        return "shows nothing; write letters, or leave it out"
+    return None
+
+
 def check_text(place: str, value: object, longest: int = LONGEST_NAME) -> str:
     """Return a line of text that a person gave, without the space around it.
 
@@ -64,20 +73,17 @@ def check_text(place: str, value: object, longest: int = LONGEST_NAME) -> str:
     Raises
     ------
     StageError
-        If it is no text, has too many characters or none, or one that `find_unfit` finds.
+        If it is no text, has too many characters, or is one that `explain_unfit` explains.
     """
-    text = value.strip() if isinstance(value, str) else ""
-    if not text or len(text) > longest:
-        shown = f"has {len(text)} characters" if text else f"is {value!r}"
-        limit = f"expected text of 1 to {longest} characters"
-        raise StageError(f"{place} {shown}, {limit}; put a shorter one in quotes")
-    if unfit := find_unfit(text):
-        raise StageError(f"{place} has {unfit!r}; leave out {UNFIT}")
+    limit = f"expected text of 1 to {longest} characters"
+    if not isinstance(value, str):
+        raise StageError(f"{place} is {value!r}, {limit}; put it in quotes")
+    text = value.strip()
+    if len(text) > longest:
+        raise StageError(f"{place} has {len(text)} characters, {limit}; write fewer")
+    if fault := explain_unfit(text):
+        raise StageError(f"{place} {fault}")
     return text
-
-
-UNFIT = "line breaks, control characters and what is no character"
-"""What `find_unfit` finds, in words."""
 
 
 def check_path(path: FilePath) -> None:

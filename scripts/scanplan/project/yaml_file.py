@@ -6,6 +6,7 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 _MOST_BYTES = 2**18
 """Four thousand corrections, or ten times all settings; PyYAML reads them in 1 to 3 s, every job
 anew."""
+
+
+_OCTAL = re.compile(r"[-+]?0[0-7_]+")
 
 
 class _Loader(yaml.SafeLoader):
@@ -57,6 +61,8 @@ class _Loader(yaml.SafeLoader):
     def construct_object(self, node: yaml.Node, deep: bool = False) -> Any:
         if node.tag.endswith((":int", ":float")) and ":" in node.value:
             raise _fault(f"`{node.value}` would be read as minutes, to the base of 60", node)
+        if node.tag.endswith(":int") and _OCTAL.fullmatch(node.value):
+            raise _fault(f"`{node.value}` would be read to the base of 8, leave the 0 out", node)
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError, AttributeError):
