@@ -38,14 +38,14 @@ def try_commands(folder, tally, n_kills=60):
     (folder / "project").mkdir()
     project = Project(_ROOT, folder / "project")
     for name in _NAMES:
-        _write_dataset(project.folder / name)
+        write_dataset(project.folder / name)
         outcome, said = run_command(project, "--dry-run", dataset=name)
         if (project.folder / "pwned").exists():
             outcome = judging.SILENT
         tally.add("hostile names", name, outcome, said, peak_mb=judging.children_peak_mb())
-    _write_dataset(project.folder / "d")
+    write_dataset(project.folder / "d")
     # Snakemake's own copies of the rules have 7 kB, the scans half a megabyte
-    _write_dataset(project.folder / "large", n_points=20_000)
+    write_dataset(project.folder / "large", n_points=20_000)
     for kb in (20, 60, 200):
         limit = partial(_limit, resource.RLIMIT_FSIZE, kb * 1024)
         given = {"dataset": "large", "target": "scans.parquet"}
@@ -63,28 +63,38 @@ def try_commands(folder, tally, n_kills=60):
 
 
 def run_command(project, *arguments, dataset="d", target=None, before=None, may_pass=True):
-    """Run the workflow; return the outcome, and its last line."""
+    """Run the workflow on one dataset; return the outcome, and its last line."""
     wanted = [f"results/{dataset}/{target}"] if target else []
-    command = project.command(*wanted, *arguments, "--config", f'dataset=["{dataset}"]')
+    given = ("--config", f'dataset=["{dataset}"]')
+    outcome, said = run_arguments(
+        project, *wanted, *arguments, *given, before=before, may_pass=may_pass
+    )
+    return outcome, said.splitlines()[-1] if said else ""
+
+
+def run_arguments(
+    project, *arguments, before=None, may_pass=True, variables=None, longest_s=_LONGEST_S
+):
+    """Run the workflow; return the outcome, and what it said."""
     try:
         run = subprocess.run(
-            command,
+            project.command(*arguments),
             cwd=project.folder,
-            env=project.env(),
+            env=project.env() | (variables or {}),
             capture_output=True,
             text=True,
-            timeout=_LONGEST_S,
+            timeout=longest_s,
             preexec_fn=before,
         )
     except subprocess.TimeoutExpired:
         return judging.HANG, ""
-    output = (run.stdout + run.stderr).splitlines()
-    last = output[-1] if output else ""
+    said = run.stdout + run.stderr
+    last = said.splitlines()[-1] if said else ""
     if run.returncode == 0:
-        return (judging.SOUND if may_pass else judging.SILENT), last
+        return (judging.SOUND if may_pass else judging.SILENT), said
     if "unexpected failure" in last:
-        return judging.UNEXPECTED, last
-    return (judging.CLEAR if last.startswith("scanplan: ") else judging.NO_LINE), last
+        return judging.UNEXPECTED, said
+    return (judging.CLEAR if last.startswith("scanplan: ") else judging.NO_LINE), said
 
 
 def try_interrupts(project, tally, n_times):
@@ -175,7 +185,7 @@ def _limit(what, size):
     resource.setrlimit(what, (size, size))
 
 
-def _write_dataset(folder, n_points=60):
+def write_dataset(folder, n_points=60):
     folder.mkdir(exist_ok=True)
     maker = bag_making.Maker()
     entries = [

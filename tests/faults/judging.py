@@ -2,6 +2,7 @@
 
 import io
 import resource
+import signal
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -76,21 +77,32 @@ class Tally:
 def judge(case: Case, tally: Tally) -> None:
     """Run a case and add what came of it."""
     begin_s = time.monotonic()
+    before = signal.signal(signal.SIGALRM, _end_of_time)
+    # what waits for ever is ended, a little after what is slow
+    signal.alarm(2 * _LONGEST_S)
     # Linux forgets the largest size that the process has had
     Path("/proc/self/clear_refs").write_text("5")
     try:
         with redirect_stderr(io.StringIO()):
             result = case.run()
-    except StageError as error:
-        is_line = len(str(error).splitlines()) == 1
+    except (StageError, SystemExit) as error:
+        # escapes steer a terminal
+        is_line = str(error).isprintable() and len(str(error)) > 10
         outcome, said = (CLEAR if is_line else NO_LINE), str(error)
     except Exception as error:
         outcome, said = UNEXPECTED, f"{type(error).__name__}: {error}"
     else:
         outcome, said = (SOUND if case.may_pass and case.is_right(result) else SILENT), ""
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
     if time.monotonic() - begin_s > _LONGEST_S:
         outcome = HANG
     tally.add(case.group, case.name, outcome, said, peak_mb=_own_peak_mb())
+
+
+def _end_of_time(*_: object) -> None:
+    raise TimeoutError("no end")
 
 
 def children_peak_mb() -> int:

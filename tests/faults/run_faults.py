@@ -19,13 +19,15 @@ from faults import (
     recording_cases,
     settings_cases,
     table_flips,
+    word_cases,
+    word_runs,
     wrong_units,
 )
 
 SEED = 17
 
 
-def try_in_process(folder, tally, *, n_damaged, n_salvaged, n_messages, n_flips, n_files):
+def try_in_process(folder, tally, *, n_damaged, n_salvaged, n_messages, n_flips, n_files, n_drawn):
     """Try all that needs no run of the workflow."""
     cases = [
         *recording_cases.list_damage_cases(folder, n_damaged),
@@ -34,6 +36,7 @@ def try_in_process(folder, tally, *, n_damaged, n_salvaged, n_messages, n_flips,
         *recording_cases.list_bomb_cases(folder),
         *recording_cases.list_scan_folder_cases(folder, n_files),
         *settings_cases.list_settings_cases(folder),
+        *word_cases.list_word_cases(folder, n_drawn),
     ]
     for case in cases:
         judging.judge(case, tally)
@@ -49,8 +52,9 @@ MANY = {
     "n_messages": 300,
     "n_flips": 2000,
     "n_files": 15,
+    "n_drawn": 100,
 }
-FEW = {"n_damaged": 2, "n_salvaged": 3, "n_messages": 40, "n_flips": 10, "n_files": 2}
+FEW = {"n_damaged": 2, "n_salvaged": 3, "n_messages": 40, "n_flips": 10, "n_files": 2, "n_drawn": 1}
 
 
 def main():
@@ -67,6 +71,7 @@ def main():
                 wrong_units.try_mistakes(Path(folder), tally)
             print(tally.table(), flush=True)
         if asked.kills and not asked.quick:
+            word_runs.try_words(Path(folder), tally)
             commands.try_commands(Path(folder), tally, asked.kills)
             print(tally.table())
     return 1 if tally.wrong else 0

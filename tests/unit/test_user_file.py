@@ -1,57 +1,27 @@
 """Files that a person writes: what is no file is not opened, what is too large not read."""
 
-import os
-import socket
-
 import pytest
 
+from helpers import odd_files
 from scanplan.errors import StageError
 from scanplan.project.user_file import find_file, read_text
 from scanplan.project.yaml_file import read_yaml
 
 
-def make_pipe(path):
-    os.mkfifo(path)
-
-
-def make_device(path):
-    path.symlink_to("/dev/zero")
-
-
-def make_socket(path):
-    # a socket's path may have hardly a hundred bytes
-    here = os.open(path.parent, os.O_RDONLY)
-    with socket.socket(socket.AF_UNIX) as made:
-        made.bind(f"/proc/self/fd/{here}/{path.name}")
-    os.close(here)
-
-
-def make_lost_link(path):
-    path.symlink_to("nowhere")
-
-
-def make_loop(path):
-    path.symlink_to(path.name)
-
-
-def make_folder(path):
-    path.mkdir()
-
-
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("put", "said"),
     [
-        (make_pipe, "is a pipe, expected a file"),
-        (make_device, "is a device, expected a file"),
-        (make_socket, "is a socket, expected a file"),
-        (make_folder, "is a folder, expected a file"),
-        (make_lost_link, "is a link that leads nowhere"),
-        (make_loop, "cannot be read (Too many levels of symbolic links)"),
+        (odd_files.put_pipe, "is a pipe, expected a file"),
+        (odd_files.put_device, "is a device, expected a file"),
+        (odd_files.put_socket, "is a socket, expected a file"),
+        (odd_files.put_folder, "is a folder, expected a file"),
+        (odd_files.put_lost_link, "is a link that leads nowhere"),
+        (odd_files.put_loop, "cannot be read (Too many levels of symbolic links)"),
     ],
 )
-def test_what_is_no_file_is_told_and_not_opened(tmp_path, make, said):
+def test_what_is_no_file_is_told_and_not_opened(tmp_path, put, said):
     path = tmp_path / "dataset.yaml"
-    make(path)
+    put(path)
     for read in (find_file, read_text):
         with pytest.raises(StageError) as told:
             read(path, "write one")

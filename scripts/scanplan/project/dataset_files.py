@@ -10,7 +10,7 @@ from pathlib import Path
 
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
-from scanplan.project import dataset_entries
+from scanplan.project import dataset_entries, texts
 from scanplan.project.dataset_entries import POSES_FILE, ROSBAG2_SUFFIXES, SCANS_FOLDER
 from scanplan.project.dataset_entries import is_rosbag2_metadata as is_rosbag2_metadata
 
@@ -65,6 +65,7 @@ def name_results(place: str, text: str) -> str:
     text : str
     """
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", text)
+    texts.check_path(name)
     if name.startswith(".") or not re.search(r"[A-Za-z0-9]", name):
         raise StageError(
             f"{place}: no name for results can be made of it; rename it to letters, digits, _ . -"

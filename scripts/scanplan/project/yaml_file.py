@@ -85,7 +85,7 @@ def read_yaml(path: FilePath) -> dict[Any, Any]:
         If it is no YAML or no mapping, has a duplicate key, an alias or a merge key; see
         `user_file.read_text`.
     """
-    text = user_file.read_text(path, "name a YAML file with settings, in UTF-8", _MOST_BYTES)
+    text = user_file.read_text(path, "give a YAML file, in UTF-8", _MOST_BYTES)
     try:
         values = yaml.load(text, _Loader) or {}
     except yaml.MarkedYAMLError as error:
