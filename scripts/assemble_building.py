@@ -14,7 +14,7 @@ from scanplan.exports.building.sheet_set import compose_sheets
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan_files
-from scanplan.project import code_files
+from scanplan.project import building_file, code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath, Settings
@@ -55,6 +55,9 @@ def assemble_building(
     elevations_m = [
         _elevation_m(storey, free) for storey, free in zip(storeys, files["free"], strict=True)
     ]
+    found_m = {s["dataset"]: high_m for s, high_m in zip(storeys, elevations_m, strict=True)}
+    if fault := building_file.explain_low_storey(found_m):
+        log.log_warning(f"assemble_building: {fault}; give their `elevation_m` in building.yaml")
     placed = [
         PlacedStorey(
             storey["name"],

@@ -3,8 +3,10 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files
@@ -62,6 +64,9 @@ def export_plan(
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
     if len(evidence["t_ns"]) and clocks.read_date(int(evidence["t_ns"].min())) is None:
         log.log_line("export_plan: stamps begin where clocks do that nobody set: no date is stated")
+    if unknown := list_unknown(word.text for word in composition.paper_words(sheet)):
+        boxes = "are boxes in PDF and PNG, as their font has no such letters"
+        log.log_warning(f"export_plan: {' '.join(unknown[:MOST_NAMED])} {boxes}")
     on_paper = f"1:{sheet.page.scale} on {sheet.page.name}"
     contents = floorplan.summarise_floorplan(drawn)
     log.log_line(f"export_plan: {contents}; {_summarise_heights(drawn)}; {on_paper}")

@@ -1,14 +1,10 @@
-"""What people write: names, lists, corrections, buildings, and what stands in their files' place.
-
-Cases whose names begin with `+` were in no list that anybody had given.
-"""
+"""What people write: names, lists, corrections, buildings, and what is in the files' place."""
 
 import json
-import random
-import string
 from functools import partial
 from pathlib import Path
 
+from faults import word_inputs
 from faults.judging import Case
 from helpers import odd_files
 from helpers.corrected_files import exported, read_texts
@@ -18,194 +14,6 @@ from scanplan.project import building_file, corrections_file, dataset, overlooke
 from scanplan.project.settings import end_on_faulty_settings
 
 _ROOT = Path(__file__).resolve().parents[2]
-_LETTERS = "".join(random.Random(1).choices(string.ascii_letters, k=300))
-
-_WALL = "{element: wall, action: add, line: [[1, 1], [4, 1]], thickness_m: T}"
-_ENTRIES = {
-    "action in a list": "{element: wall, action: [1], at: [1, 2]}",
-    "element in a list": "{element: [wall], action: keep, at: [1, 2]}",
-    "lone surrogate": '{element: room, at: [1, 2], name: "\\ud83c"}',
-    "U+FFFF": '{element: room, at: [1, 2], name: "a\\uffff"}',
-    "line break in a name": '{element: room, at: [1, 2], name: "a\\nb"}',
-    "colour code in a name": '{element: room, at: [1, 2], name: "\\e[31ma"}',
-    "colour code in a key": '{element: room, at: [1, 2], "\\e[31m": 1, name: a}',
-    "name of 100,000 characters": f"{{element: room, at: [1, 2], name: {'a' * 100_000}}}",
-    "wall in millimetres": "{element: wall, action: add, line: [[0, 0], [30000, 0]]}",
-    "wall of 1e11 m": "{element: wall, action: add, line: [[0, 0], [1.0e+11, 0]]}",
-    "thickness of 1e-300": _WALL.replace("T", "1.0e-300"),
-    "thickness of 9.9": _WALL.replace("T", "9.9"),
-    "+ thickness in millimetres": _WALL.replace("T", "200"),
-    "+ thickness of NaN": _WALL.replace("T", ".nan"),
-    "+ thickness of a truth": _WALL.replace("T", "yes"),
-    "+ thickness octal": _WALL.replace("T", "01"),
-    "+ wall of 1 mm": "{element: wall, action: add, line: [[0, 0], [0.001, 0]]}",
-    "+ line of three places": "{element: wall, action: add, line: [[0, 0], [1, 0], [1, 1]]}",
-    "+ line of heights": "{element: wall, action: add, line: [[0, 0, 1], [1, 0, 1]]}",
-    "+ place as text": "{element: wall, action: keep, at: '1, 2'}",
-    "+ place of sexagesimals": "{element: wall, action: keep, at: [1:30, 2]}",
-    "+ place of octals": "{element: wall, action: keep, at: [010, 2]}",
-    "+ name that is a no": "{element: room, at: [1, 2], name: no}",
-    "+ name that is a date": "{element: room, at: [1, 2], name: 2020-01-01}",
-    "+ name of nothing to see": '{element: room, at: [1, 2], name: "\\u200b\\u00ad"}',
-    "+ name read backwards": '{element: room, at: [1, 2], name: "a\\u202eb"}',
-    "+ name with a line separator": '{element: room, at: [1, 2], name: "a\\u2028b"}',
-    "+ name with NEL": '{element: room, at: [1, 2], name: "a\\x85b"}',
-    "+ surrogates in reverse": '{element: room, at: [1, 2], name: "\\udfe0\\ud83c"}',
-    "+ name in bytes": "{element: room, at: [1, 2], name: !!binary aGk=}",
-    "+ name of a set": "{element: room, at: [1, 2], name: !!set {a}}",
-    "+ kind of a list": "{element: opening, at: [1, 2], kind: [door]}",
-    "+ entry of another's keys": "{wall: {at: [1, 2]}}",
-    "+ key that is a number": "{element: room, at: [1, 2], name: a, 5: 6}",
-    "+ key that is nothing": "{element: room, at: [1, 2], name: a, ~: 6}",
-}
-_POINTS = {
-    "50 km apart": ([[0, 0], [9, 0]], [[0, 0], [50_000, 0]]),
-    "mirrored": ([[0, 0], [9, 0], [0, 9]], [[0, 0], [9, 0], [0, -9]]),
-    "at one place": ([[0, 0], [0, 1e-9]], [[0, 0], [0, 9]]),
-    "scale 1000": ([[0, 0], [9, 0]], [[0, 0], [9000, 0]]),
-    "east 1e300": ([[0, 0], [9, 0]], [[1e300, 0], [1e300, 9]]),
-    "+ map in millimetres": ([[0, 0], [9000, 0]], [[0, 0], [9, 0]]),
-    "+ world in feet": ([[0, 0], [9, 0]], [[0, 0], [29.5, 0]]),
-    "+ world in degrees": ([[0, 0], [90, 0]], [[8.5, 47.3], [8.501, 47.3]]),
-    "+ east and north swapped": (
-        [[0, 0], [9, 0], [3, 9]],
-        [[5e6, 4e5], [5e6, 400_009], [5_000_009, 400_003]],
-    ),
-    "+ one of nine off": (
-        [[i, i % 2] for i in range(0, 90, 10)],
-        [[i + 300 * (i == 40), i % 2] for i in range(0, 90, 10)],
-    ),
-    "+ world at one place": ([[0, 0], [9, 0]], [[5, 5], [5, 5]]),
-    "+ other zones": ([[0, 0], [90, 0]], [[500_000, 5e6], [100_000, 5e6]]),
-}
-_SYSTEMS = [
-    "EPSG:0",
-    f"EPSG:{'9' * 20}",
-    "EPSG:4326",
-    "EPSG:4978",
-    "epsg:25832",
-    "EPSG:²",
-    "EPSG: 25832",
-]
-_ROOM = {"element": "room", "name": "a"}
-_WALL_KEPT = {"element": "wall", "action": "keep"}
-
-
-def _feature(properties, kind, coordinates):
-    geometry = {"type": kind, "coordinates": coordinates}
-    return json.dumps({"features": [{"properties": properties, "geometry": geometry}]})
-
-
-_FEATURES = {
-    "geometry that is a word": '{"features": [{"properties": {}, "geometry": "Point"}]}',
-    "+ features in an object": '{"features": {"a": 1}}',
-    "+ features twice": '{"features": [], "features": []}',
-    "+ property twice": _feature(_ROOM, "Point", [1, 1]).replace("element", "name", 1),
-    "+ nested a million deep": "[" * 10**6,
-    "+ a million features": '{"features": [' + "{}," * 10**6 + "{}]}",
-    "+ polygon": _feature(_WALL_KEPT, "Polygon", [[[0, 0], [1, 0], [1, 1]]]),
-    "+ coordinates that are NaN": _feature(_WALL_KEPT, "Point", [float("nan"), 1]),
-    "+ coordinates of 10,000 digits": _feature(_ROOM, "Point", [7, 1]).replace("7", "7" * 10_000),
-    "+ coordinates that are none": _feature(_ROOM, "Point", None),
-    "+ coordinates in a text": _feature(_ROOM, "Point", "1, 2"),
-    "+ lone surrogate": _feature(_ROOM | {"name": "\ud83c"}, "Point", [1, 1]),
-    "+ properties in a list": '{"features": [{"properties": [], "geometry": {}}]}',
-    "+ UTF-16": '{"features": []}'.encode("utf-16"),
-}
-_YAML = {
-    "a million keys": "".join(f"k{i}: 1\n" for i in range(10**6)),
-    "+ a million entries": "corrections:\n" + "- 1\n" * 10**6,
-    "+ two documents": "corrections: []\n---\ncorrections: []\n",
-    "+ entries with keys of their own": "corrections: {1: {element: wall}}",
-    "+ key twice": "corrections: []\ncorrections: []\n",
-    "+ a tag of its own": "corrections: !mine []",
-    "+ a directive": "%YAML 3.0\n---\ncorrections: []\n",
-    "+ as many brackets as fit": "corrections: " + "[" * 250_000,
-    "+ keys of one text": "corrections: [" + "{a, " * 60_000,
-}  # fmt: skip
-_LISTS = {
-    "path twice": "path\tpath\na\tb\n",
-    "name twice": "name\tpath\tname\na\tb\tc\n",
-    "X and x": "name\tpath\nX\ta\nx\tb\n",
-    "summary.html": "name\tpath\nsummary.html\ta\n",
-    "thesis": "path\na/thesis\n",
-    "a path of 5,000 characters": "path\n" + "a/" * 2500 + "b\n",
-    "a path with NUL": "path\na\0b\n",
-    "a path with a colour code": "path\n\x1b[31ma\n",
-    "a name with a colour code": "name\tpath\n\x1b[31m\ta\n",
-    "+ a target": "path\na/ALL\n",
-    "+ Comparison": "name\tpath\nComparison\ta\n",
-    "+ SUMMARY.Parquet": "name\tpath\nSUMMARY.Parquet\ta\n",
-    "+ a column in capitals": "Path\na\n",
-    "+ a header after a blank": "\n\npath\na\n",
-    "+ commas": "path,name\na,b\n",
-    "+ UTF-16": "path\na\n".encode("utf-16"),
-    "+ a path of 300 characters in one name": f"path\n{_LETTERS}\n",
-    "+ a name of 300 characters": f"name\tpath\n{_LETTERS}\ta\n",
-    "+ a name of two dots": "name\tpath\n..\ta\n",
-    "+ a quote that never ends": 'path\n"a\nb\nc\n',
-    "+ a field of 200,000 characters": f"path\n{'a' * 200_000}\n",
-    "+ five megabytes": "path\n" + "a\n" * 2_500_000,
-    "+ a path read backwards": "path\na\u202eb\n",
-    "+ a path with U+2028": "path\na\u2028b\n",
-    "+ two paths that differ in signs": "path\na b\na_b\n",
-    "+ one folder by two ways": "path\n./a\nb/../a\n",
-}
-_PATHS = {
-    "NUL": "a\0b",
-    "5,000 characters": "a/" * 2500,
-    "a colour code": "\x1b[31ma",
-    "+ 300 characters": _LETTERS,
-    "+ bytes that are no UTF-8": "a\udcff",
-    "+ a line break": "a\nb",
-    "+ nothing but dots": "...",
-    "+ spaces": "   ",
-    "+ the root": "/",
-}
-_STOREYS = "storeys: [{dataset: a, elevation_m: 0}, {dataset: b, elevation_m: 3}]\n"
-_BUILDINGS = {
-    "two at one elevation": _STOREYS.replace("3}", "0}"),
-    "elevation of 1e8 m": _STOREYS.replace("3}", "1.0e+8}"),
-    "storey of 10,000 characters": _STOREYS.replace("3}", f"3, name: {'a' * 10_000}}}"),
-    "named thesis": _STOREYS + "name: thesis\n",
-    "named like a list's words": _STOREYS + "name: summary.html\n",
-    "+ named like a storey in capitals": _STOREYS + "name: A\n",
-    "+ named a dot": _STOREYS + "name: '.'\n",
-    "+ named up": _STOREYS + "name: ../x\n",
-    "+ named in a list": _STOREYS + "name: [a, b]\n",
-    "+ named nothing": _STOREYS + "name: ''\n",
-    "+ 3 mm apart": _STOREYS.replace("3}", "0.003}"),
-    "+ elevation of NaN": _STOREYS.replace("3}", ".nan}"),
-    "+ elevation of a truth": _STOREYS.replace("3}", "yes}"),
-    "+ elevation octal": _STOREYS.replace("3}", "010}"),
-    "+ turned by 1e300 degrees": _STOREYS.replace("3}", "3, building_from_map: [0, 0, 1.0e+300]}"),
-    "+ 1e8 m aside": _STOREYS.replace("3}", "3, building_from_map: [1.0e+8, 0, 0]}"),
-    "+ named read backwards": _STOREYS.replace("3}", '3, name: "a\\u202eb"}'),
-    "+ dataset up": _STOREYS.replace("dataset: b", "dataset: ../b"),
-    "+ frame of 5 MB": _STOREYS + f"frame: {'a' * 5_000_000}\n",
-    "+ frame with a colour code": _STOREYS + 'frame: "\\e[31m"\n',
-}
-_DRAWN = {
-    "braces": "{dataset} {}",
-    "caret and backslash": "a ^J \\P \\U+0041",
-    "emoji": "Küche 🏠",
-    "+ markup": "<b onload=x>&amp;</b>",
-    "+ percent codes": "%%c 100 %%% %d %s",
-    "+ codes of another alphabet": "\\M+1A2B4 \\\\U+00e9",
-    "+ quotes": "\"'`$(x)${y}",
-    "+ a formula": "=HYPERLINK(1)",
-    "+ mathematics": "$\\frac{1}{2}$",
-    "+ Chinese": "厨房",
-    "+ from right to left": "מטבח",
-    "+ a family of four": "👨\u200d👩\u200d👧\u200d👦",
-    "+ marks upon marks": "a" + "\u0301" * 40,
-    "+ eighty wide letters": "W" * 80,
-    "+ eighty emoji": "🏠" * 80,
-    "+ the end of IFC": "ENDSEC;END-ISO-10303-21;'",
-    "+ the end of a stream": "endstream endobj (\\) Tj",
-    "+ SQL": "'); DROP TABLE rooms; --",
-    "+ private use": "\ue000 Flur",
-}  # fmt: skip
 
 
 def list_word_cases(folder, n_drawn):
@@ -230,17 +38,19 @@ def _write(folder, name, content):
 
 
 def _list_corrections(folder):
-    texts = {name: f"corrections:\n- {entry}\n" for name, entry in _ENTRIES.items()} | _YAML
-    for system in _SYSTEMS:
+    texts = {
+        name: f"corrections:\n- {entry}\n" for name, entry in word_inputs.ENTRIES.items()
+    } | word_inputs.YAML
+    for system in word_inputs.SYSTEMS:
         texts[f"crs {system}"] = _state_points([[0, 0], [9, 0]], [[1, 2], [10, 2]], system)
-    for name, (at, world) in _POINTS.items():
+    for name, (at, world) in word_inputs.POINTS.items():
         texts[f"points {name}"] = _state_points(at, world, "EPSG:25832")
     cases = []
     for number, (name, text) in enumerate(texts.items()):
         path = _write(folder / f"corrections_{number}", "corrections.yaml", text)
         run = partial(corrections_file.read_corrections, path)
         cases.append(Case("corrections", name, run, may_pass=False))
-    for number, (name, text) in enumerate(_FEATURES.items()):
+    for number, (name, text) in enumerate(word_inputs.FEATURES.items()):
         path = _write(folder / f"features_{number}", "corrections.geojson", text)
         run = partial(corrections_file.read_corrections, path)
         cases.append(Case("corrections of GeoJSON", name, run, may_pass=False))
@@ -259,11 +69,11 @@ def _state_points(at, world, crs):
 
 def _list_lists(folder):
     cases = []
-    for number, (name, text) in enumerate(_LISTS.items()):
+    for number, (name, text) in enumerate(word_inputs.LISTS.items()):
         path = _write(folder / f"list_{number}", "floors.tsv", text)
         run = partial(dataset.name_datasets, str(path))
         cases.append(Case("lists", name, run, may_pass=False))
-    for name, path in _PATHS.items():
+    for name, path in word_inputs.PATHS.items():
         run = partial(dataset.name_datasets, [path])
         cases.append(Case("paths", name, run, may_pass=False))
     return cases
@@ -271,7 +81,7 @@ def _list_lists(folder):
 
 def _list_buildings(folder):
     cases = []
-    for number, (name, text) in enumerate(_BUILDINGS.items()):
+    for number, (name, text) in enumerate(word_inputs.BUILDINGS.items()):
         inside = folder / f"building_{number}"
         _write(inside, "building.yaml", text)
         given = {dataset: str(inside / dataset) for dataset in "ab"}
@@ -363,14 +173,14 @@ def _list_overlooked(folder):
         run = partial(overlooked_files.list_overlooked, inside)
         cases.append(Case("overlooked files", name, run, lambda notes: len(notes) == 1))
     given = folder / "overlooked_building"
-    _write(given, "Building.yml", _STOREYS)
+    _write(given, "Building.yml", word_inputs.STOREYS)
     run = partial(building_file.list_overlooked, {name: str(given / name) for name in "ab"})
     return [*cases, Case("overlooked files", "+ Building.yml", run, lambda notes: len(notes) == 1)]
 
 
 def _list_drawn(folder, n_drawn):
     cases = []
-    for number, (what, name) in enumerate([*_DRAWN.items()][:n_drawn]):
+    for number, (what, name) in enumerate([*word_inputs.DRAWN.items()][:n_drawn]):
         inside = folder / f"drawn_{number}"
         inside.mkdir()
         run = partial(_draw, inside, name)

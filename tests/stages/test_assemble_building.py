@@ -194,6 +194,17 @@ def test_a_shared_frame_tells_the_elevations(floors, tmp_path):
     assert [s.Elevation for s in storeys] == [-0.3, 3.0]
 
 
+def test_floors_that_were_seen_at_one_height_are_told(floors, tmp_path, caplog):
+    made = building(floors, tmp_path, storey("{x} ^ \\ ё", None), storey("a <b>/c", None))
+    said = "survey of {x} ^ \\ ё and survey of a <b>/c lie 0 m apart, storeys are at least 0.5 m"
+    assert said in caplog.text
+    names = [s.Name for s in ifcopenshell.open(made["ifc"]).by_type("IfcBuildingStorey")]
+    assert names == ["{x} ^ \\ ё", "a <b>/c"]
+    drawing = ezdxf.readfile(made["dxf"])
+    assert drawing.layout_names_in_taborder()[1:] == ["1 {x}     ё", "2 a  b  c"]
+    assert not drawing.audit().errors
+
+
 def test_a_storey_without_floor_and_elevation_ends_in_one_line(floors, tmp_path):
     free = tmp_path / "free.parquet"
     tables.write_table(free, planning.TABLES["free"], floorplan_making.free())

@@ -161,3 +161,14 @@ def test_a_name_is_the_same_letters_to_every_reader(name, tmp_path):
     stamps = document.modelspace().query("INSERT")
     assert sum(stamp.dxf.name.startswith("ROOM-STAMP") for stamp in stamps) == 2
     assert not document.audit().errors
+
+
+@pytest.mark.filterwarnings("ignore:Glyph")
+def test_letters_that_the_font_lacks_are_told(tmp_path, caplog):
+    files = exported(tmp_path, [{"element": "room", "at": [5, 1], "name": "厨房 Ж 🏠"}])
+    assert "export_plan: 厨 房 🏠 are boxes in PDF and PNG" in caplog.text
+    found = read_texts(files)
+    assert all("厨房 Ж 🏠" in found[kind] for kind in ("ifc", "dxf", "svg", "geojson"))
+    caplog.clear()
+    exported(tmp_path, [{"element": "room", "at": [5, 1], "name": "Küche Ж"}])
+    assert "boxes" not in caplog.text

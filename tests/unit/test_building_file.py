@@ -79,7 +79,7 @@ def test_a_shared_frame_needs_no_elevation(tmp_path):
         ),
         (
             GOOD.replace("3.2", "0"),
-            "Ground floor and floor_1 lie 0 m apart, storeys are at least 0.5",
+            "floor_0 and floor_1 lie 0 m apart, storeys are at least 0.5",
         ),
         (GOOD.replace("3.2", "1.0e+8"), "elevation_m is 100000000.0, expected metres, up to 10000"),
         (GOOD.replace("[1.5, -2, 90]", "[1.5, -2, 361]"), "up to 10000 m and 360"),

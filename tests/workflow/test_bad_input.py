@@ -45,6 +45,11 @@ def test_a_wrong_key_in_dataset_yaml(project, tmp_path):
     ends_with_one_line(project, "survey", "dataset.yaml", "keep_evry")
 
 
+def test_nothing_of_what_is_given_steers_the_terminal(project, tmp_path):
+    (tmp_path / "floors.tsv").write_text("path\n\x1b[31mred\n")
+    ends_with_one_line(project, "floors.tsv", r"\x1b[31mred: has '\x1b' in its name; rename it")
+
+
 @pytest.mark.parametrize(
     ("target", "said"),
     [

@@ -5,9 +5,10 @@ No heavy imports: this runs while the workflow is being parsed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -144,23 +145,30 @@ def read_building(path: FilePath) -> Building:
     for i, storey in enumerate(storeys):
         if storey.dataset in [other.dataset for other in storeys[:i]]:
             raise StageError(f"{path}: dataset {storey.dataset} is two storeys; leave one out")
-    _check_elevations(path, storeys)
+    stated_m = {s.dataset: s.elevation_m for s in storeys if s.elevation_m is not None}
+    if fault := explain_low_storey(stated_m):
+        raise StageError(f"{path}: by elevation_m {fault}; give that of each floor")
     given_name = texts.check_text(f"{path}: name", values.get("name", "building"))
     name = dataset_files.name_results(f"{path}: name {given_name}", given_name)
     dataset_files.check_results_name(str(path), name)
     return Building(name, storeys)
 
 
-def _check_elevations(path: FilePath, storeys: Sequence[Storey]) -> None:
-    """Refuse storeys at one height: their models and drawings would lie in one another."""
-    stated = [storey for storey in storeys if storey.elevation_m is not None]
-    stated.sort(key=lambda storey: storey.elevation_m or 0.0)
-    for lower, upper in pairwise(stated):
-        apart_m = (upper.elevation_m or 0.0) - (lower.elevation_m or 0.0)
-        if apart_m < _LEAST_APART_M:
-            fault = f"{lower.name} and {upper.name} lie {apart_m:g} m apart"
+def explain_low_storey(elevations_m: Mapping[str, float]) -> str | None:
+    """Return which storeys lie in one another, None where all are as far apart as storeys are.
+
+    Parameters
+    ----------
+    elevations_m : dict of str to float
+        Of the floors, by the storeys' names.
+    """
+    for (lower, low_m), (upper, high_m) in pairwise(
+        sorted(elevations_m.items(), key=itemgetter(1))
+    ):
+        if high_m - low_m < _LEAST_APART_M:
             limit = f"storeys are at least {_LEAST_APART_M:g} m apart"
-            raise StageError(f"{path}: by elevation_m {fault}, {limit}; give that of each floor")
+            return f"{lower} and {upper} lie {high_m - low_m:g} m apart, {limit}"
+    return None
 
 
 def _read_storey(place: str, values: Any, is_shared: bool, *, is_first: bool) -> Storey:

@@ -1,10 +1,11 @@
 """Text on a sheet: how wide it is, and which characters it may have."""
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
 import shapely
-from matplotlib.font_manager import FontProperties
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.textpath import TextToPath
 
 from scanplan.exports.sheet.marks import Word
@@ -30,6 +31,12 @@ def measure_width_mm(text: str, capitals_mm: float) -> float:
         text, FontProperties(family=FONT, size=size), ismath=False
     )
     return float(width) / POINTS_PER_MM
+
+
+def list_unknown(texts: Iterable[str]) -> list[str]:
+    """Return the characters that the font has no letter for: PDF and PNG show a box for each."""
+    known = get_font(findfont(FontProperties(family=FONT))).get_charmap()
+    return sorted({c for text in texts for c in text if ord(c) not in known})
 
 
 def clean_text(text: str) -> str:
