@@ -127,13 +127,17 @@ def _list_places(folder):
             put((inside / "d" if run is _describe else inside) / name)
             case = partial(run, inside, name)
             cases.append(Case("in the place of files", f"{what}: {name}", case, may_pass=False))
-    for name in ("truth.geojson", "truth_poses.tum"):
-        for what in ("a pipe", "a dangling link", "a folder"):
-            inside = folder / f"{name}_{what.replace(' ', '_')}"
+    others = ("truth.geojson", "truth_poses.tum", "b.bag", "b.mcap", "b.db3", "c/b.bag")
+    for number, name in enumerate(others):
+        for what in ("a pipe", "a dangling link", "+ a link to itself"):
+            inside = folder / f"other_{number}_{_IN_PLACE[what].__name__}"
             _write(inside / "d", "run.bag", "x")
-            _IN_PLACE[what](inside / "d" / name)
+            path = inside / "d" / name
+            path.parent.mkdir(exist_ok=True)
+            _IN_PLACE[what](path)
             case = partial(_describe, inside, name)
-            cases.append(Case("in the place of files", f"+ {what}: {name}", case, may_pass=False))
+            kind = f"+ {what.removeprefix('+ ')}: {name}"
+            cases.append(Case("in the place of files", kind, case, may_pass=False))
     return cases
 
 

@@ -1,5 +1,6 @@
 import pytest
 
+from helpers import odd_files
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
 
@@ -144,6 +145,28 @@ def test_refuses_what_is_missing_or_no_recording(tmp_path):
         dataset_files.find_files(put(tmp_path / "a.txt"))
     with pytest.raises(StageError, match="did not close"):
         dataset_files.find_files(put(tmp_path / "a.bag.active"))
+
+
+@pytest.mark.parametrize(
+    "put_odd", [odd_files.put_pipe, odd_files.put_lost_link, odd_files.put_loop]
+)
+@pytest.mark.parametrize("name", ["b.bag", "b.mcap", "b.db3", "run/b_0.db3"])
+def test_a_recording_that_is_no_file_is_not_lost_beside_others(tmp_path, put_odd, name):
+    put(tmp_path / "a.bag")
+    put(tmp_path / "run/metadata.yaml", METADATA), put(tmp_path / "run/a_0.mcap")
+    put_odd(tmp_path / name)
+    with pytest.raises(StageError, match=f"{name}: .*; copy it again, or remove it"):
+        dataset_files.find_files(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["scans/2.pcd", "poses.tum"])
+def test_a_cloud_or_poses_that_are_no_file_are_told(tmp_path, name):
+    put(tmp_path / "scans/1.pcd")
+    put(tmp_path / "poses.tum")
+    (tmp_path / name).unlink(missing_ok=True)
+    odd_files.put_lost_link(tmp_path / name)
+    with pytest.raises(StageError):
+        dataset_files.find_files(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["run\n2.bag", "\x1b[31mrun.bag", "a\u202eb.bag", "run\udcff.bag"])

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
-from scanplan.project import texts
+from scanplan.project import texts, user_file
 
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
@@ -21,7 +21,7 @@ _CLOUD_SUFFIXES = (".pcd", ".ply")
 
 def is_rosbag2_metadata(file: FilePath) -> bool:
     """Return whether a file is the description that stands in every rosbag2 folder."""
-    if not os.access(file, os.R_OK):
+    if not Path(file).is_file() or not os.access(file, os.R_OK):
         return False
     with Path(file).open("rb") as content:
         # its first key: a file of any size may have the name
@@ -45,14 +45,15 @@ def list_recordings(folder: Path) -> list[Path]:
     bags = []
     rosbag2_files = []
     for place in (folder, *subfolders):
-        bags += [e for e in visible(place) if e.suffix == ".bag" and e.is_file()]
+        bags += [e for e in visible(place) if e.suffix == ".bag" and not e.is_dir()]
         rosbag2_files += _list_rosbag2_files(place)
     return bags + rosbag2_files
 
 
 def _list_rosbag2_files(folder: Path) -> list[Path]:
     """Return the files of a rosbag2 folder; without metadata.yaml those that stand alone."""
-    entries = [e for e in visible(folder) if e.is_file()]
+    # what is no file is refused later: a recording on a disk that is not there is not to be lost
+    entries = [e for e in visible(folder) if not e.is_dir()]
     metadata = folder / "metadata.yaml"
     if metadata not in entries or not is_rosbag2_metadata(metadata):
         return [e for e in entries if e.name.endswith((".db3", ".mcap"))]
@@ -103,7 +104,7 @@ def check_unfinished(path: Path) -> None:
 
 
 def check_file(file: Path) -> None:
-    """Refuse a file that is empty, badly named, or that its recorder did not close.
+    """Refuse what is no file, one that is empty or badly named, or that its recorder left open.
 
     Raises
     ------
@@ -114,6 +115,7 @@ def check_file(file: Path) -> None:
         raise StageError(
             f"{file}: Snakemake takes {named[0]} in a name for a placeholder; rename it"
         )
+    user_file.check_regular(file, "copy it again, or remove it")
     if file.stat().st_size == 0:
         raise StageError(f"{file}: is empty (0 bytes); remove it or copy it again")
     wal = file.with_name(file.name + "-wal")

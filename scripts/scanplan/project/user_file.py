@@ -32,7 +32,7 @@ def find_file(path: FilePath, remedy: str) -> Path | None:
     """
     if not os.path.lexists(path):
         return None
-    _check_regular(path, remedy)
+    check_regular(path, remedy)
     return Path(path)
 
 
@@ -52,7 +52,7 @@ def read_text(path: FilePath, remedy: str, most_bytes: int = _MOST_BYTES) -> str
         If there is no such file, it is not regular or cannot be read, is larger than people write,
         or no text in UTF-8.
     """
-    _check_regular(path, remedy)
+    check_regular(path, remedy)
     try:
         n_bytes = Path(path).stat().st_size
         if n_bytes > most_bytes:
@@ -67,8 +67,13 @@ def read_text(path: FilePath, remedy: str, most_bytes: int = _MOST_BYTES) -> str
         raise StageError(f"{path}: cannot be read ({error.strerror}); {remedy}") from None
 
 
-def _check_regular(path: FilePath, remedy: str) -> None:
-    """Refuse what is no regular file before it is opened: to open a pipe may wait for ever."""
+def check_regular(path: FilePath, remedy: str) -> None:
+    """Refuse what is no regular file before it is opened: to open a pipe may wait for ever.
+
+    Raises
+    ------
+    StageError
+    """
     try:
         mode = Path(path).stat().st_mode
     except FileNotFoundError:
