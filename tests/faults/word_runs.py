@@ -74,7 +74,7 @@ def _try_files(project, tally):
 
 
 def _judge(project, tally, name, arguments, *, may_pass=False, told=""):
-    run = partial(commands.run_arguments, project, "--dry-run", *arguments, longest_s=60)
+    run = partial(commands.run_arguments, project, "--dry-run", *arguments, longest_s=120)
     outcome, said = run(may_pass=may_pass)
     if outcome == judging.SOUND and told:
         outcome = judging.TOLD if told in said else judging.SILENT
