@@ -53,6 +53,19 @@ HOMES = {
 }
 """Library to the files and folders of the package that may import it."""
 
+OVERLAYS = frozenset(
+    (
+        *("buffer", "build_area", "clip_by_rect", "coverage_simplify", "coverage_union"),
+        *("coverage_union_all", "difference", "disjoint_subset_union", "disjoint_subset_union_all"),
+        *("intersection", "intersection_all", "line_merge", "linemerge", "make_valid", "node"),
+        *("offset_curve", "parallel_offset", "polygonize", "polygonize_full", "set_precision"),
+        *("shared_paths", "simplify", "snap", "symmetric_difference", "symmetric_difference_all"),
+        *("unary_union", "union", "union_all"),
+    )
+)
+"""What shapely's functions and geometries call that which `geometry/overlays.py` alone may ask of
+them; of a set, operators say the same."""
+
 HEAVY = ("numpy", "shapely", "pyarrow", "scipy", "open3d", "matplotlib", "rosbags")
 
 
@@ -173,6 +186,45 @@ def test_a_library_is_imported_in_its_homes_only(library):
         if any(name.split(".")[0] == library for name in imported(path, types=True))
     ]
     assert [user for user in users if not user.startswith(HOMES[library] or ("-",))] == []
+
+
+def find_overlays(path: Path, source: str) -> list[str]:
+    """Return the places of a file, file:line, that ask shapely for an overlay."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Attribute) and node.attr in OVERLAYS:
+            # the output's bytes, sets by their class, rows of pandas
+            of = ast.unparse(node.value).rpartition(".")[2]
+            is_other = of in ("stdout", "stderr", "set", "frozenset", "index")
+            found += [] if is_other else [f"{path.relative_to(ROOT)}:{node.lineno}"]
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shapely"):
+            is_one = any(alias.name in OVERLAYS for alias in node.names)
+            found += [f"{path.relative_to(ROOT)}:{node.lineno}"] if is_one else []
+    return found
+
+
+def test_only_overlays_asks_for_overlays():
+    home = PACKAGE / "geometry/overlays.py"
+    files = [path for path in sorted(SCRIPTS.rglob("*.py")) if path != home]
+    assert find_overlays(home, home.read_text(encoding="utf-8"))
+    found = [place for path in files for place in find_overlays(path, path.read_text("utf-8"))]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    "planted",
+    [
+        "import shapely\nshapely.union_all(areas)",
+        "import shapely\nareas = room.buffer(0.1)",
+        "import shapely\nreduce(shapely.difference, areas)",
+        "import shapely\nparts = [room.intersection(area).area for room in rooms]",
+        "import shapely\nfrom shapely.ops import unary_union",
+        "import shapely\nfrom shapely import difference as minus",
+    ],
+)
+def test_an_overlay_elsewhere_is_found_with_its_line(planted):
+    place = PACKAGE / "plan/planted.py"
+    assert find_overlays(place, planted) == ["scripts/scanplan/plan/planted.py:2"]
 
 
 def read_by_rules() -> set[str]:

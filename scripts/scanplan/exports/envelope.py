@@ -5,6 +5,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, FloatArray
@@ -42,10 +43,10 @@ def find_external_walls(plan: FloorPlan) -> BoolArray:
 def outline_plan(plan: FloorPlan) -> BaseGeometry:
     """Return what a plan covers: rooms, free floor, walls, and all that these enclose."""
     floor = shapely.from_wkb(np.asarray(plan.free["geometry"], object))
-    covered = shapely.union_all([*plan.areas, *floor, *plan.bodies])
-    closed = shapely.buffer(covered, _BEYOND_M / 2, join_style="mitre")
-    whole = shapely.buffer(closed, -_BEYOND_M / 2, join_style="mitre")
+    covered = overlays.unite_areas([*plan.areas, *floor, *plan.bodies])
+    closed = overlays.buffer_shapes(covered, _BEYOND_M / 2, join_style="mitre")
+    whole = overlays.buffer_shapes(closed, -_BEYOND_M / 2, join_style="mitre")
     filled = [Polygon(part.exterior) for part in shapely.get_parts(whole)]
-    outline = shapely.union_all(filled)
+    outline = overlays.unite_areas(filled)
     shapely.prepare(outline)
     return outline

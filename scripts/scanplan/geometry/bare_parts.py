@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry import LinearRing, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.polygons import largest_first
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -52,13 +53,13 @@ def cut_bare_parts(
         What is left: of several parts those that somebody was in, or else the largest; none where
         all of it is bare.
     """
-    near = walled.buffer(beside_m)
+    near = overlays.buffer_shapes(walled, beside_m)
     shapely.prepare([walled, near, visited])
     rest, whole = [ground], []
     while rest:
         polygon = rest.pop()
         bare = list(_find_bare_parts(polygon, walled, near, visited, max_walled, beside_m, step_m))
-        left = shapely.difference(polygon, shapely.union_all(bare), grid_size=SHORTEST_M)
+        left = overlays.subtract_areas(polygon, overlays.unite_areas(bare), grid=SHORTEST_M)
         if left.area < polygon.area - SHORTEST_M:
             rest += take_visited(left, visited)
         else:
@@ -106,7 +107,7 @@ def walled_share(ring: LinearRing, walled: BaseGeometry) -> float:
     walled : shapely geometry
         Ground of or before walls, which outlines along walls lie in.
     """
-    return float(ring.intersection(walled).length / ring.length)
+    return float(overlays.intersect_lines(ring, walled).length / ring.length)
 
 
 def _find_bare_parts(
@@ -148,7 +149,7 @@ def _find_bare_parts(
         for hole in ground.interiors
         if walled_share(hole, walled) > max_walled and not _is_narrow(hole, beside_m)
     ]
-    inner = Polygon(ground.exterior, holes).buffer(SHORTEST_M)
+    inner = overlays.buffer_shapes(Polygon(ground.exterior, holes), SHORTEST_M)
     shapely.prepare(inner)
     is_inside = shapely.covers(inner, chords)
     begin, end, chord_m = begin[is_inside], end[is_inside], chord_m[is_inside]
@@ -171,7 +172,7 @@ def _find_bare_parts(
 
 def _is_narrow(hole: LinearRing, width_m: float) -> bool:
     """Return whether a hole is nowhere as wide."""
-    return Polygon(hole).buffer(-width_m / 2).is_empty
+    return overlays.buffer_shapes(Polygon(hole), -width_m / 2).is_empty
 
 
 def _find_turns(steps_m: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -107,7 +108,7 @@ def fill_polygons(polygons: Iterable[BaseGeometry], grid: Grid) -> BoolArray:
     Such a cell has an odd number of edges on its left.
     """
     is_odd = np.zeros(grid.shape, np.uint8)
-    merged = shapely.union_all(list(polygons))
+    merged = overlays.unite_areas(list(polygons))
     for ring in shapely.get_rings(shapely.get_parts(merged)):
         corners = (shapely.get_coordinates(ring) - grid.low_m) / grid.cell_m - 0.5
         for (x0, y0), (x1, y1) in pairwise(corners):

@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.bare_parts import draw_way
 from scanplan.geometry.bitmap import Grid, fill_polygons
 from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
@@ -83,7 +84,7 @@ def find_narrow_places(
     for pair, cells in _borders(basin):
         row, column = cells[np.argmax(far_m[cells[:, 0], cells[:, 1]])]
         middle_m = grid.low_m + (np.array([column, row]) + 0.5) * cell_m
-        near = shapely.clip_by_rect(filled, *(middle_m - reach_m), *(middle_m + reach_m))
+        near = overlays.clip_areas(filled, *(middle_m - reach_m), *(middle_m + reach_m))
         line = _shortest_across(near, middle_m)
         if line is None or not 0 < _length_m(line) <= max_width_m:
             continue
@@ -102,7 +103,7 @@ def _choose_gaps(
     chosen: list[FloatArray] = []
     for gap in sorted(gaps_m, key=_length_m):
         # what is beyond its ends parts other ground
-        beside = LineString(gap).buffer(_length_m(gap) / 2, cap_style="flat")
+        beside = overlays.buffer_shapes(LineString(gap), _length_m(gap) / 2, cap_style="flat")
         is_known = any(beside.intersects(LineString(line)) for line in [*lines, *chosen])
         if is_known or not shapely.contains_xy(ground, *gap.mean(axis=0)):
             continue
@@ -124,8 +125,8 @@ def _fill_islands(ground: BaseGeometry, walls: BaseGeometry) -> BaseGeometry:
     holes = [Polygon(ring) for part in parts for ring in part.interiors]
     small = [hole for hole in holes if hole.area <= FURNITURE_M2]
     # a wall between two doors stands alone, too
-    islands = [hole for hole in small if hole.intersection(walls).area < hole.area / 2]
-    return shapely.union_all([*parts, *islands], grid_size=SHORTEST_M)
+    islands = [hole for hole in small if overlays.intersect_areas(hole, walls).area < hole.area / 2]
+    return overlays.unite_areas([*parts, *islands], grid=SHORTEST_M)
 
 
 def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: float) -> IntArray:
@@ -271,7 +272,7 @@ def _shortest_across(ground: BaseGeometry, middle_m: FloatArray) -> FloatArray |
 def _line_across(ground: BaseGeometry, place_m: FloatArray, way: FloatArray) -> FloatArray | None:
     """Return the line (2, 2) through a place from outline to outline; None outside of ground."""
     reach = _diagonal_m(ground) * way
-    pieces = shapely.intersection(ground, LineString([place_m - reach, place_m + reach]))
+    pieces = overlays.intersect_lines(ground, LineString([place_m - reach, place_m + reach]))
     place = shapely.Point(place_m)
     for piece in shapely.get_parts(pieces):
         if piece.geom_type == "LineString" and piece.distance(place) < SHORTEST_M:
@@ -320,11 +321,11 @@ def _part_enough(
     """
     chosen = list(lines)
     while True:
-        cuts = [_lengthen(line).buffer(SHORTEST_M) for line in chosen]
-        parts = shapely.get_parts(shapely.difference(ground, shapely.union_all(cuts)))
+        cuts = [overlays.buffer_shapes(_lengthen(line), SHORTEST_M) for line in chosen]
+        parts = shapely.get_parts(overlays.subtract_areas(ground, overlays.unite_areas(cuts)))
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
-        is_wide = ~shapely.is_empty(shapely.buffer(parts, -sliver_m))
+        is_wide = ~shapely.is_empty(overlays.buffer_shapes(parts, -sliver_m))
         beside = [_parts_beside(line, parts) for line in chosen]
         cut_off = [
             i
@@ -340,8 +341,8 @@ def _part_enough(
 
 def _parts_beside(line: FloatArray, parts: Array) -> IntArray:
     """Return the rows of the parts along a line that was cut; not of what is beyond its ends."""
-    beside = LineString(line).buffer(2 * SHORTEST_M, cap_style="flat")
-    return np.flatnonzero(shapely.area(shapely.intersection(parts, beside)) > SMALLEST_M2)
+    beside = overlays.buffer_shapes(LineString(line), 2 * SHORTEST_M, cap_style="flat")
+    return np.flatnonzero(shapely.area(overlays.intersect_areas(parts, beside)) > SMALLEST_M2)
 
 
 def _is_visited(part: Polygon, visited: Array) -> bool:

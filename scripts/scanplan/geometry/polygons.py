@@ -1,14 +1,14 @@
-"""Polygons made fit for overlays, and overlays that rounding cannot stop."""
+"""Polygons: their sides, their order, and how they are made fit for overlays."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.tolerances import ROUNDING, SAME_M
+from scanplan.geometry import overlays
+from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import Array
 
 Polygons = Sequence[BaseGeometry] | Array
@@ -57,40 +57,6 @@ def move_near_origin(polygons: Polygons) -> Array:
     return _polygonal(shapely.transform(array, lambda xy: _without_dust(xy - centre)))
 
 
-def subtract_polygons(polygons: Polygons, others: Polygons) -> Array:
-    """Subtract (n,) others from (n,) polygons, each from its own.
-
-    Where rounding makes an overlay inconsistent it is done again with all corners on a grid of a
-    micrometre.
-    """
-    return _each(shapely.difference, polygons, others)
-
-
-def unite_polygons(polygons: Polygons) -> BaseGeometry:
-    """Unite (n,) polygons; see `subtract_polygons`."""
-    try:
-        return shapely.union_all(polygons)
-    except shapely.GEOSException:
-        return shapely.union_all(shapely.make_valid(polygons), grid_size=SAME_M)
-
-
-def _each(function: Callable[..., Any], polygons: Polygons, others: Polygons) -> Array:
-    try:
-        return function(polygons, others)
-    except shapely.GEOSException:
-        pairs = zip(polygons, others, strict=True)
-        return np.array([_one(function, *pair) for pair in pairs], object)
-
-
-def _one(
-    function: Callable[..., BaseGeometry], polygon: BaseGeometry, other: BaseGeometry
-) -> BaseGeometry:
-    try:
-        return function(polygon, other)
-    except shapely.GEOSException:
-        return function(shapely.make_valid(polygon), shapely.make_valid(other), grid_size=SAME_M)
-
-
 def _without_dust(xy_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Set numbers near 0 to 0: products of the smallest underflow, and overlays go wrong."""
     return np.where(np.abs(xy_m) < ROUNDING, 0.0, xy_m)
@@ -101,10 +67,5 @@ def _polygonal(geometries: Array) -> Array:
     geometries = geometries.copy()
     is_polygon = np.isin(shapely.get_type_id(geometries), _POLYGONAL)
     fit = is_polygon & shapely.is_valid(geometries)
-    geometries[~fit] = [_areas_of(geometry) for geometry in geometries[~fit]]
+    geometries[~fit] = overlays.repair_areas(geometries[~fit])
     return geometries
-
-
-def _areas_of(geometry: BaseGeometry) -> BaseGeometry:
-    members = shapely.get_parts(shapely.get_parts(shapely.make_valid(geometry)))
-    return shapely.union_all(members[shapely.get_dimensions(members) == 2])

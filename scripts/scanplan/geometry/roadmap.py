@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
@@ -56,7 +57,7 @@ def make_grid(part: BaseGeometry, clearance_m: float, cell_m: float) -> RoadmapG
     x0, y0, x1, y1 = part.bounds
     x = np.arange(x0 - cell_m, x1 + 2 * cell_m, cell_m)
     y = np.arange(y0 - cell_m, y1 + 2 * cell_m, cell_m)
-    inner = part.buffer(-_MARGIN_M)
+    inner = overlays.buffer_shapes(part, -_MARGIN_M)
     shapely.prepare(inner)
     inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
     near_m = np.asarray(distance_transform_edt(inside)) * cell_m + clearance_m

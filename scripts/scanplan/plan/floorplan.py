@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.plan import wall_footprints
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
@@ -190,8 +191,8 @@ class FloorPlan:
     def solid(self, state: str) -> BaseGeometry:
         """Return the footprint of the walls of one state and known thickness, less openings."""
         bodies = self.known_bodies[self.walls["state"][self.thick] == state]
-        merged = shapely.union_all(bodies, grid_size=_GRID_M)
-        return shapely.difference(merged, shapely.union_all(self.gaps), grid_size=_GRID_M)
+        merged = overlays.unite_areas(bodies, grid=_GRID_M)
+        return overlays.subtract_areas(merged, overlays.unite_areas(self.gaps), grid=_GRID_M)
 
     def single(self, state: str) -> Array:
         """Return the surfaces of one state with nothing known behind them, less openings.
@@ -208,8 +209,10 @@ class FloorPlan:
         face_lines_m = centrelines_m(self.faces)[is_loose]
         lines = line_shapes(np.concatenate([wall_lines_m, face_lines_m]))
         # they end at the surfaces of the walls that they meet
-        hidden = shapely.union_all([*self.gaps, *shapely.buffer(self.known_bodies, _GRID_M)])
-        parts = shapely.get_parts(shapely.difference(lines, hidden))
+        hidden = overlays.unite_areas(
+            [*self.gaps, *overlays.buffer_shapes(self.known_bodies, _GRID_M)]
+        )
+        parts = shapely.get_parts(overlays.subtract_lines(lines, hidden))
         return parts[shapely.length(parts) > 0]
 
     @cached_property
@@ -221,9 +224,9 @@ class FloorPlan:
         """
         if self.thick.all():
             return shapely.Polygon()
-        bodies = shapely.union_all(self.bodies, grid_size=_GRID_M)
-        others = shapely.union_all([*self.gaps, *self.known_bodies, *self.areas])
-        return shapely.difference(bodies, others, grid_size=_GRID_M)
+        bodies = overlays.unite_areas(self.bodies, grid=_GRID_M)
+        others = overlays.unite_areas([*self.gaps, *self.known_bodies, *self.areas])
+        return overlays.subtract_areas(bodies, others, grid=_GRID_M)
 
     @cached_property
     def main_direction_deg(self) -> float:
@@ -333,12 +336,12 @@ class FloorPlan:
         What rooms and walls enclose on all sides, and narrow ground beside rooms: before a wall,
         between two of them, in a notch of one.
         """
-        built = shapely.union_all([*self.areas, *self.bodies], grid_size=_GRID_M)
+        built = overlays.unite_areas([*self.areas, *self.bodies], grid=_GRID_M)
         closed = close_gaps(built)
         holes = [shapely.Polygon(r) for part in shapely.get_parts(closed) for r in part.interiors]
-        enclosed = shapely.difference(np.array(holes, object), built, grid_size=_GRID_M)
-        gaps = shapely.get_parts(shapely.difference(closed, built, grid_size=_GRID_M))
-        rooms = shapely.union_all(self.areas)
+        enclosed = overlays.subtract_areas(np.array(holes, object), built, grid=_GRID_M)
+        gaps = shapely.get_parts(overlays.subtract_areas(closed, built, grid=_GRID_M))
+        rooms = overlays.unite_areas(self.areas)
         beside = gaps[shapely.dwithin(gaps, rooms, _GRID_M)]
         return self._leave_unseen(np.concatenate([enclosed, beside]))
 
@@ -350,8 +353,8 @@ class FloorPlan:
         )
         if len(seen) == 0:
             return np.empty(0, object)
-        known = shapely.union_all([*seen, *pieces], grid_size=_GRID_M)
-        hidden = shapely.difference(grounds, known, grid_size=_GRID_M)
+        known = overlays.unite_areas([*seen, *pieces], grid=_GRID_M)
+        hidden = overlays.subtract_areas(grounds, known, grid=_GRID_M)
         parts = [part for ground in hidden for part in free_space.open_polygons(ground, END_M)]
         return np.array(parts, object)
 
@@ -423,13 +426,13 @@ def buffer_lines(lines: FloatArray, half_m: FloatArray) -> Array:
     """Return rectangles (n,) along lines (n, 2, 2), `half_m` (n,) to each side."""
     if len(lines) == 0:
         return np.array([], object)
-    return shapely.buffer(line_shapes(lines), half_m, cap_style="flat")
+    return overlays.buffer_shapes(line_shapes(lines), half_m, cap_style="flat")
 
 
 def close_gaps(built: BaseGeometry) -> BaseGeometry:
     """Return what is built with gaps closed that ends of walls leave, which err on both sides."""
-    grown = shapely.buffer(built, 2 * END_M, join_style="mitre")
-    return shapely.buffer(grown, -2 * END_M, join_style="mitre")
+    grown = overlays.buffer_shapes(built, 2 * END_M, join_style="mitre")
+    return overlays.buffer_shapes(grown, -2 * END_M, join_style="mitre")
 
 
 def _bounds(shapes: Iterable[BaseGeometry]) -> tuple[FloatArray, FloatArray]:

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from scanplan.geometry import overlays
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.pieces import Piece
@@ -229,7 +230,7 @@ def free_columns(polygons: Iterable[Polygon]) -> dict[str, Array]:
 
 def draw_leaf(ends_m: FloatArray) -> Polygon:
     """Return the ground that a leaf hangs over, of its surface (2, 2) from end to end."""
-    return LineString(ends_m).buffer(_LEAF_M / 2, cap_style="flat")
+    return overlays.buffer_shapes(LineString(ends_m), _LEAF_M / 2, cap_style="flat")
 
 
 def furniture_columns(

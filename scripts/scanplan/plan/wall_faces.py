@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
@@ -77,7 +78,7 @@ class _Ground:
         if not others:
             low_m, high_m = extent_m
             return [(float(low_m), float(high_m))]
-        rest = shapely.get_parts(shapely.difference(interval, shapely.union_all(others)))
+        rest = shapely.get_parts(overlays.subtract_lines(interval, overlays.unite_areas(others)))
         parts_m = [line.along_m(shapely.get_coordinates(part)) for part in rest if part.length > 0]
         return sorted((float(part_m.min()), float(part_m.max())) for part_m in parts_m)
 

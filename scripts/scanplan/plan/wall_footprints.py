@@ -196,7 +196,7 @@ def _cross_at_ends(lines_m: FloatArray, stops: list[tuple[int, int]]) -> Iterato
     taken: set[int] = set()
     for end, wall in stops:
         others = [e for e in (2 * wall, 2 * wall + 1) if (e, end // 2) in stopping]
-        is_free = not taken.intersection({end, *others})
+        is_free = taken.isdisjoint({end, *others})
         line, crossed = (shapely.LineString(lines_m[row]) for row in (end // 2, wall))
         is_turned = abs(_cross(way[end // 2], way[wall])) >= _MIN_SINE
         if others and is_free and is_turned and line.intersects(crossed):

@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.plan.openings import GAP, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
@@ -64,17 +65,21 @@ def ground_before(walls: Sequence[PlanWall], unpaired_m: float) -> BaseGeometry:
     """
     before: list[BaseGeometry] = []
     for wall, strip in zip(walls, wall_strips(walls, unpaired_m), strict=True):
-        around = strip.buffer(END_M)
+        around = overlays.buffer_shapes(strip, END_M)
         if np.isnan(wall.thickness_m):
             back = shapely.LineString(wall.ends - unpaired_m * wall.line.normal)
-            around = around.difference(back.buffer(END_M, cap_style="square"))
+            around = overlays.subtract_areas(
+                around, overlays.buffer_shapes(back, END_M, cap_style="square")
+            )
         before.append(around)
-    return shapely.union_all(before)
+    return overlays.unite_areas(before)
 
 
 def opening_polygon(wall: PlanWall, gap: Opening, unpaired_m: float) -> Polygon:
     """Return the ground of an opening in a wall, a polygon a little deeper than the wall."""
-    return _ground(wall, gap.low_m, gap.high_m, unpaired_m).buffer(GRID_M, join_style="mitre")
+    return overlays.buffer_shapes(
+        _ground(wall, gap.low_m, gap.high_m, unpaired_m), GRID_M, join_style="mitre"
+    )
 
 
 def find_bare_spans(
@@ -100,12 +105,12 @@ def find_bare_spans(
         Shorter spans are of corners.
     """
     strips = wall_strips(walls, unpaired_m)
-    walled = shapely.union_all(shapely.buffer(np.array(strips, object), END_M))
+    walled = overlays.unite_areas(overlays.buffer_shapes(np.array(strips, object), END_M))
     found: list[BareSpan] = []
     for number, room in enumerate(rooms):
-        bare = shapely.difference(shapely.boundary(room), walled)
-        for line in shapely.get_parts(shapely.line_merge(bare)):
-            corners_m = shapely.get_coordinates(line.simplify(END_M))
+        bare = overlays.subtract_lines(shapely.boundary(room), walled)
+        for line in shapely.get_parts(overlays.merge_lines(bare)):
+            corners_m = shapely.get_coordinates(overlays.simplify_shapes(line, END_M))
             for ends_m in np.stack([corners_m[:-1], corners_m[1:]], axis=1):
                 if np.hypot(*(ends_m[1] - ends_m[0])) >= min_length_m:
                     found.append(BareSpan(ends_m, number, _kind_beyond(ends_m, room, floor)))
@@ -114,9 +119,9 @@ def find_bare_spans(
 
 def _kind_beyond(ends_m: FloatArray, room: Polygon, floor: BaseGeometry) -> str:
     """Return what a span is by what lies beyond it."""
-    beside = shapely.LineString(ends_m).buffer(2 * END_M, cap_style="flat")
-    beyond = shapely.difference(beside, room)
-    seen_m2 = shapely.intersection(beyond, floor).area
+    beside = overlays.buffer_shapes(shapely.LineString(ends_m), 2 * END_M, cap_style="flat")
+    beyond = overlays.subtract_areas(beside, room)
+    seen_m2 = overlays.intersect_areas(beyond, floor).area
     return GAP if seen_m2 > beyond.area - seen_m2 else UNSEEN
 
 

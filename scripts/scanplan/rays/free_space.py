@@ -7,6 +7,7 @@ import shapely
 from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays import ray_set
 from scanplan.rays.beam_spread import column_spacing_rad
@@ -66,7 +67,7 @@ def find_seen_floor(
 def _make_star(outline_m: FloatArray) -> MultiPolygon:
     if len(outline_m) < 3:
         return MultiPolygon()
-    star = shapely.make_valid(Polygon(outline_m)).simplify(_SIMPLIFY_M)
+    star = overlays.simplify_shapes(overlays.repair_areas(Polygon(outline_m)), _SIMPLIFY_M)
     return union_on_grid(open_polygons(star, 2 * _SIMPLIFY_M))
 
 
@@ -137,13 +138,13 @@ def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> 
     """
     is_known = np.hypot(*np.diff(track_m, axis=0).T) <= max_step_m
     steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)[is_known]
-    return [shapely.LineString(step_m).buffer(width_m / 2) for step_m in steps_m]
+    return [overlays.buffer_shapes(shapely.LineString(step_m), width_m / 2) for step_m in steps_m]
 
 
 def union_on_grid(polygons: Sequence[BaseGeometry]) -> MultiPolygon:
     """Return the union of polygons, polygons whose corners are on a grid of a millimetre."""
     return (
-        polygon_parts(shapely.union_all(polygons, grid_size=GRID_M))
+        polygon_parts(overlays.unite_areas(polygons, grid=GRID_M))
         if len(polygons)
         else MultiPolygon()
     )
@@ -154,7 +155,7 @@ def difference_on_grid(ground: BaseGeometry, taken: BaseGeometry) -> MultiPolygo
 
     Without a grid GEOS 3.14 may return nothing where the ground just fills a hole of what is taken.
     """
-    return polygon_parts(shapely.difference(polygon_parts(ground), taken, grid_size=GRID_M))
+    return polygon_parts(overlays.subtract_areas(polygon_parts(ground), taken, grid=GRID_M))
 
 
 def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
@@ -169,20 +170,20 @@ def open_polygons(ground: BaseGeometry, half_m: float) -> list[Polygon]:
     """
     ground = polygon_parts(ground)
     opened = []
-    for core in polygon_parts(ground.buffer(-half_m, join_style="mitre")).geoms:
-        grown = core.buffer(half_m, join_style="mitre")
+    for core in polygon_parts(overlays.buffer_shapes(ground, -half_m, join_style="mitre")).geoms:
+        grown = overlays.buffer_shapes(core, half_m, join_style="mitre")
         # GEOS 3.14 makes nested shells of some mitres, which no overlay takes
         # or shells that touch along a line, which stays when they are repaired
-        grown = grown if grown.is_valid else polygon_parts(shapely.make_valid(grown))
-        grown = shapely.intersection(grown, ground, grid_size=GRID_M)
+        grown = grown if grown.is_valid else polygon_parts(overlays.repair_areas(grown))
+        grown = overlays.intersect_areas(grown, ground, grid=GRID_M)
         opened += [part for part in polygon_parts(grown).geoms if part.intersects(core)]
     return opened
 
 
 def close_shadows(ground: BaseGeometry, half_m: float) -> BaseGeometry:
     """Return ground with what is narrower than twice a width between parts of it."""
-    grown = ground.buffer(half_m, join_style="mitre")
-    return shapely.union(grown.buffer(-half_m, join_style="mitre"), ground)
+    grown = overlays.buffer_shapes(ground, half_m, join_style="mitre")
+    return overlays.unite_each(overlays.buffer_shapes(grown, -half_m, join_style="mitre"), ground)
 
 
 def polygon_parts(geometry: BaseGeometry) -> MultiPolygon:

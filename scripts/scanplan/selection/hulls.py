@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M, SMALLEST_M2
 from scanplan.store import schemas
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
@@ -104,7 +105,7 @@ def scan_polygons(columns: Columns) -> tuple[IntArray, Array]:
         Empty for a scan of degenerate clusters only.
     """
     scan_ids, groups = _split_by_scan(columns, columns["cluster"] != OUTLIERS)
-    unions = [shapely.union_all(hulls[shapely.get_dimensions(hulls) == 2]) for hulls in groups]
+    unions = [overlays.unite_areas(hulls[shapely.get_dimensions(hulls) == 2]) for hulls in groups]
     with_area = [union if union.area > 0 else shapely.Polygon() for union in unions]
     return scan_ids, np.array(with_area, object)
 

@@ -9,12 +9,8 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import (
-    Polygons,
-    move_near_origin,
-    subtract_polygons,
-    unite_polygons,
-)
+from scanplan.geometry import overlays
+from scanplan.geometry.polygons import Polygons, move_near_origin
 from scanplan.selection import area_greedy, hulls
 from scanplan.selection.survey_scans import SurveyScans
 from scanplan.types import IntArray
@@ -115,10 +111,10 @@ class _Sieve:
 
     def take(self, index: int, polygon: BaseGeometry, least_m2: float) -> bool:
         """Take a polygon if it adds enough; return whether it did."""
-        added_m2 = subtract_polygons([polygon], [self._union])[0].area
+        added_m2 = overlays.subtract_areas(polygon, self._union).area
         if added_m2 < least_m2:
             return False
-        self._union = unite_polygons([self._union, polygon])
+        self._union = overlays.unite_areas([self._union, polygon])
         self.chosen.append(index)
         self.covered_m2 += added_m2
         return True

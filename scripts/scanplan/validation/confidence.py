@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.plan.floorplan import NUMBERS, FloorPlan
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray
@@ -98,10 +99,11 @@ def _have_doubtful_walls(plan: FloorPlan, verify: BoolArray) -> BoolArray:
     """Return around which rooms (r,) most length of walls is of those (n,) to be verified."""
     outlines = shapely.boundary(plan.areas)
     doubtful, walls = (
-        shapely.union_all(bodies).buffer(END_M) for bodies in (plan.bodies[verify], plan.bodies)
+        overlays.buffer_shapes(overlays.unite_areas(bodies), END_M)
+        for bodies in (plan.bodies[verify], plan.bodies)
     )
     along_doubtful_m, along_m = (
-        shapely.length(shapely.intersection(outlines, ground)) for ground in (doubtful, walls)
+        shapely.length(overlays.intersect_lines(outlines, ground)) for ground in (doubtful, walls)
     )
     return 2 * along_doubtful_m > along_m
 

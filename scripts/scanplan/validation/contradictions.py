@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.plan.tolerances import CORNER_M, END_M, ENOUGH_RAYS
@@ -73,6 +74,8 @@ def measure_share_through_walls(plan: FloorPlan, track_m: FloatArray) -> float:
     steps = steps[(length_m > SHORTEST_M) & (length_m <= 2 * (CORNER_M + STRETCH_M))]
     if len(steps) < ENOUGH_RAYS:
         return 0.0
-    ways = shapely.union_all(shapely.buffer(plan.gaps, END_M))
-    walls = shapely.difference(shapely.union_all(line_shapes(centrelines_m(plan.walls))), ways)
+    ways = overlays.unite_areas(overlays.buffer_shapes(plan.gaps, END_M))
+    walls = overlays.subtract_lines(
+        overlays.unite_lines(line_shapes(centrelines_m(plan.walls))), ways
+    )
     return float(shapely.intersects(steps, walls).mean())

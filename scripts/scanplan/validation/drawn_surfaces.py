@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
@@ -91,7 +92,7 @@ def list_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> DrawnSurfa
     surfaces += _opening_surfaces(plan, planar=planar)
     surfaces += _wall_ends(plan)
     lines_m = np.array([surface.ends_m for surface in surfaces], float).reshape(-1, 2, 2)
-    drawn = shapely.union_all(shapely.buffer([*line_shapes(lines_m), *plan.gaps], END_M))
+    drawn = overlays.unite_areas(overlays.buffer_shapes([*line_shapes(lines_m), *plan.gaps], END_M))
     return _gather([*surfaces, *_outline_ways(plan, drawn, span_m)])
 
 
@@ -167,7 +168,7 @@ def _opening_surfaces(plan: FloorPlan, *, planar: bool) -> Iterator[_Surface]:
 def _outline_ways(plan: FloorPlan, drawn: BaseGeometry, span_m: float) -> Iterator[_Surface]:
     """Yield what is not near anything drawn of the rooms' outlines, but for corners' rests."""
     for room, area in zip(plan.rooms["room"].tolist(), plan.areas, strict=True):
-        blank = shapely.line_merge(shapely.difference(shapely.boundary(area), drawn))
+        blank = overlays.merge_lines(overlays.subtract_lines(shapely.boundary(area), drawn))
         span = 0
         for line in shapely.get_parts(blank):
             corners_m = shapely.get_coordinates(line)

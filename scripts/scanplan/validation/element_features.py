@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
 from scanplan.types import Columns, FloatArray, IntArray
@@ -112,7 +113,7 @@ def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, Float
     # having been driven through makes a kind as sure, or an open leaf before floor that was seen
     is_known = is_between | (stated > 0.95)
     left_m, right_m = (np.append(side_m, 0.0)[plan.hosts] for side_m in plan.sides_m)
-    floor = shapely.union_all(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+    floor = overlays.unite_areas(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
     beyond = surroundings.share_floor_beyond(
         lines_m, np.column_stack([left_m, -right_m]), plan.areas, floor
     )

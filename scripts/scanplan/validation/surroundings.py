@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import SHORTEST_M
@@ -87,14 +88,14 @@ def share_floor_beyond(
     way_m = lines_m[:, 1] - lines_m[:, 0]
     width_m = np.maximum(np.hypot(*way_m.T), SHORTEST_M)
     left = np.column_stack([-way_m[:, 1], way_m[:, 0]]) / width_m[:, None]
-    rooms = shapely.union_all(areas)
+    rooms = overlays.unite_areas(areas)
     shares = np.zeros(len(lines_m))
     for side_m, sign in zip(sides_m.T, (1, -1), strict=True):
         near_m = lines_m + (side_m[:, None] * left)[:, None]
         far_m = near_m + (sign * width_m[:, None] * left)[:, None]
         ground = shapely.polygons(np.concatenate([near_m, far_m[:, ::-1]], axis=1))
         is_beyond = ~shapely.contains(rooms, shapely.centroid(ground))
-        seen_m2 = shapely.area(shapely.intersection(ground, floor))
+        seen_m2 = shapely.area(overlays.intersect_areas(ground, floor))
         shares = np.maximum(shares, np.where(is_beyond, seen_m2 / width_m**2, 0.0))
     return shares
 
@@ -109,9 +110,9 @@ def share_along(lines_m: FloatArray, areas: Array) -> FloatArray:
         Shapely polygons.
     """
     outlines = shapely.boundary(areas)
-    near = shapely.union_all(shapely.buffer(outlines, BEHIND_M))
+    near = overlays.unite_areas(overlays.buffer_shapes(outlines, BEHIND_M))
     lines = line_shapes(lines_m)
-    return shapely.length(shapely.intersection(lines, near)) / np.maximum(
+    return shapely.length(overlays.intersect_lines(lines, near)) / np.maximum(
         shapely.length(lines), SHORTEST_M
     )
 
@@ -125,9 +126,9 @@ def share_faced(areas: Array, lines_m: FloatArray) -> FloatArray:
         Shapely polygons.
     lines_m : (m, 2, 2) float64
     """
-    near = shapely.buffer(shapely.union_all(line_shapes(lines_m)), BEHIND_M)
+    near = overlays.buffer_shapes(overlays.unite_lines(line_shapes(lines_m)), BEHIND_M)
     outlines = shapely.boundary(areas)
-    return shapely.length(shapely.intersection(outlines, near)) / np.maximum(
+    return shapely.length(overlays.intersect_lines(outlines, near)) / np.maximum(
         shapely.length(outlines), SHORTEST_M
     )
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
-from scanplan.geometry import roadmap, tour
+from scanplan.geometry import overlays, roadmap, tour
 from scanplan.geometry.roadmap import RoadmapGrid
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
@@ -132,7 +132,9 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     for before, after in pairwise(order):
         cells_between = roadmap.trace_way(ways[before][1], cells[before], cells[after])
         corners_m = grid.xy_m[[cells_between[0], *cells_between]]
-        ways_m.append(shapely.get_coordinates(shapely.simplify(shapely.linestrings(corners_m), 0)))
+        ways_m.append(
+            shapely.get_coordinates(overlays.simplify_shapes(shapely.linestrings(corners_m), 0))
+        )
     return _Stops(np.array([chosen[i - 1] for i in order[1:]], np.int64), ways_m)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import FACING
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m, line_shapes
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -49,10 +50,12 @@ def block_sight(plan: FloorPlan, height_m: float) -> BaseGeometry:
     is_low = plan.low & (plan.heights_m < height_m)
     is_way = np.isin(plan.openings["type"].astype(str), WAYS)
     loose = plan.faces["wall"] < 0
-    walls = shapely.union_all(plan.bodies[~is_low])
-    surfaces = shapely.union_all(line_shapes(centrelines_m(plan.faces)[loose]))
-    blocked = shapely.union(walls, surfaces)
-    return shapely.difference(blocked, shapely.union_all(plan.gaps[is_way]))
+    ways = overlays.unite_areas(plan.gaps[is_way])
+    walls = overlays.unite_areas(plan.bodies[~is_low])
+    surfaces = overlays.unite_lines(line_shapes(centrelines_m(plan.faces)[loose]))
+    return overlays.unite_shapes(
+        [overlays.subtract_areas(walls, ways), overlays.subtract_lines(surfaces, ways)]
+    )
 
 
 def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: SensorReach) -> BoolArray:

@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from scanplan.geometry import roadmap
+from scanplan.geometry import overlays, roadmap
 from scanplan.geometry.roadmap import RoadmapGrid
 from scanplan.plan.floorplan import WAYS, FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
@@ -24,12 +24,14 @@ def find_ground(plan: FloorPlan, track_m: FloatArray, clearance_m: float) -> Roa
         What the sensor keeps from walls, furniture and floor that was not seen.
     """
     cell_m = 0.1  # doors leave a lane of two cells beside the clearance
-    floor = shapely.union_all(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+    floor = overlays.unite_areas(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
     is_way = np.isin(plan.openings["type"].astype(str), WAYS)
-    walls = shapely.difference(shapely.union_all(plan.bodies), shapely.union_all(plan.gaps[is_way]))
-    free = shapely.difference(floor, walls).buffer(-clearance_m)
-    driven = shapely.union_all(shapely.buffer(shapely.points(track_m), clearance_m))
-    grid = roadmap.make_grid(shapely.union(free, driven), clearance_m, cell_m)
+    walls = overlays.subtract_areas(
+        overlays.unite_areas(plan.bodies), overlays.unite_areas(plan.gaps[is_way])
+    )
+    free = overlays.buffer_shapes(overlays.subtract_areas(floor, walls), -clearance_m)
+    driven = overlays.unite_areas(overlays.buffer_shapes(shapely.points(track_m), clearance_m))
+    grid = roadmap.make_grid(overlays.unite_each(free, driven), clearance_m, cell_m)
     return roadmap.connected_grid(grid, track_m[0]) if len(grid.xy_m) else grid
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from scanplan.exports.envelope import NEAR_M
+from scanplan.geometry import overlays
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
@@ -139,7 +140,7 @@ def derive_id(*words: object) -> str:
 
 def grow_shapes(shapes: Array) -> Array:
     """Return shapes with as much around them as what lies near is away, by which they compare."""
-    return shapely.buffer(shapes, NEAR_M, join_style="mitre")
+    return overlays.buffer_shapes(shapes, NEAR_M, join_style="mitre")
 
 
 def _table(plan: FloorPlan, kind: str) -> Columns:
@@ -166,7 +167,7 @@ def _shared_areas(shapes: Array, known: Array) -> FloatArray:
     shared = np.zeros((len(shapes), len(known)))
     tree = shapely.STRtree(grown_known)
     rows, others = tree.query(grown, predicate="intersects")
-    common = shapely.area(shapely.intersection(grown[rows], grown_known[others]))
+    common = shapely.area(overlays.intersect_areas(grown[rows], grown_known[others]))
     areas, known_areas = shapely.area(grown)[rows], shapely.area(grown_known)[others]
     is_enough = common >= np.minimum(areas, known_areas) / 2
     shared[rows, others] = np.where(is_enough, common / (areas + known_areas - common), 0.0)

@@ -13,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.model_colours import COLOURS, colour_of, read_colour
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, Columns, FloatArray, IntArray
@@ -141,10 +142,10 @@ def _solid_parts(
     """Yield what is solid of a wall, as areas and from where to where above the floor."""
     height_m = float(plan.heights_m[row])
     own = np.flatnonzero(plan.hosts == row).tolist()
-    yield shapely.difference(body, shapely.union_all(plan.gaps[own])), (0.0, height_m)
+    yield overlays.subtract_areas(body, overlays.unite_areas(plan.gaps[own])), (0.0, height_m)
     for opening in own:
         low_m, high_m = vertical_extent_m(plan, opening)
-        cut = shapely.intersection(body, plan.gaps[opening])
+        cut = overlays.intersect_areas(body, plan.gaps[opening])
         yield cut, (0.0, low_m)
         yield cut, (high_m, height_m)
 

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.exports.data.element_tables import Rows
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
@@ -96,7 +97,9 @@ def _find_places(
             return side_m
         ahead = shapely.LineString([middle_m, side_m])
         inside = [
-            part for part in shapely.get_parts(areas[room].intersection(ahead)) if part.length
+            part
+            for part in shapely.get_parts(overlays.intersect_lines(areas[room], ahead))
+            if part.length
         ]
         longest = max(inside, key=lambda part: part.length, default=ahead)
         return shapely.get_coordinates(longest.interpolate(0.5, normalized=True))[0]

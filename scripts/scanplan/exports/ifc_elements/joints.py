@@ -15,6 +15,7 @@ from scanplan.exports.ifc_elements.spaces import floor_parts
 from scanplan.exports.ifc_elements.storey_plan import StoreyPlan
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.opening_extents import vertical_extent_m
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.types import Array, FloatArray
 
@@ -22,11 +23,13 @@ from scanplan.types import Array, FloatArray
 def connect_walls(model: IfcModel, storey: StoreyPlan, walls: Sequence[entity_instance]) -> None:
     """State which walls meet, and whether at the start, the end or along each."""
     plan = storey.plan
-    bodies = shapely.buffer(plan.bodies, NEAR_M / 2, cap_style="flat", join_style="mitre")
+    bodies = overlays.buffer_shapes(plan.bodies, NEAR_M / 2, cap_style="flat", join_style="mitre")
     lines_m = floorplan.centrelines_m(plan.walls)
     widths_m = np.add(*plan.sides_m)
     for one, other in _touching(bodies):
-        place_m = shapely.get_coordinates(bodies[one].intersection(bodies[other]).centroid)[0]
+        place_m = shapely.get_coordinates(
+            overlays.intersect_shapes(bodies[one], bodies[other]).centroid
+        )[0]
         model.file.create_entity(
             "IfcRelConnectsPathElements",
             **model.rooted("IfcRelConnectsPathElements", walls[one], walls[other]),
@@ -53,7 +56,7 @@ def bound_spaces(
         rings = shapely.get_rings(shapely.orient_polygons(shapely.get_parts(area)))
         for number in np.flatnonzero(shapely.intersects(reaches, area)):
             side = sides[number]
-            for line_m in _straight_parts(shapely.intersection(rings, side.reach), side.along):
+            for line_m in _straight_parts(overlays.intersect_lines(rings, side.reach), side.along):
                 upright = model.upright(line_m, side.extent_m)
                 _add_boundary(model, space, side.element, upright, is_external=side.is_external)
 
@@ -83,7 +86,7 @@ class _Side:
 
 def _wall_sides(storey: StoreyPlan, walls: Sequence[entity_instance]) -> Iterator[_Side]:
     plan = storey.plan
-    reaches = shapely.buffer(plan.bodies, NEAR_M)
+    reaches = overlays.buffer_shapes(plan.bodies, NEAR_M)
     for row, line_m in enumerate(floorplan.centrelines_m(plan.walls)):
         extent_m = (0.0, float(plan.heights_m[row]))
         is_external = bool(storey.external[row])
@@ -117,7 +120,7 @@ def bound_levels(
     for row, (space, area) in enumerate(zip(spaces, plan.areas, strict=True)):
         bounds = [(ceilings[row], height_m, True)] if ceilings else []
         if floors:
-            below = int(np.argmax(shapely.area(shapely.intersection(parts, area))))
+            below = int(np.argmax(shapely.area(overlays.intersect_areas(parts, area))))
             bounds.append((floors[below], 0.0, False))
         for element, level_m, is_up in bounds:
             for polygon in shapely.get_parts(area):
@@ -168,7 +171,7 @@ def _straight_parts(parts: Array, along: FloatArray) -> Iterator[FloatArray]:
     What is so short that it may be mere roughness is left out.
     """
     lines = shapely.get_parts(shapely.get_parts(parts))
-    for line in shapely.simplify(shapely.line_merge(lines), NEAR_M / 2):
+    for line in overlays.simplify_shapes(overlays.merge_lines(lines), NEAR_M / 2):
         for start_m, end_m in pairwise(shapely.get_coordinates(line)):
             step_m = end_m - start_m
             length_m = float(np.linalg.norm(step_m))

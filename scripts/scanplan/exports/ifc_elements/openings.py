@@ -18,6 +18,7 @@ from scanplan.exports.ifc_elements.walls import nominal_m
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import WAYS
 
@@ -79,7 +80,7 @@ def _add_opening(
             void.Name = f"Opening of {kind} {attributes['Tag']}"
         model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
         _describe_opening(model, storey, row, void)
-        cut = shapely.intersection(plan.bodies[host], plan.gaps[row])
+        cut = overlays.intersect_areas(plan.bodies[host], plan.gaps[row])
         depth_m = float(shapely.area(cut)) / frame.length_m
         _measure_void(model, void, frame.length_m, extent_m, depth_m)
     if kind not in _FILLED_BY:

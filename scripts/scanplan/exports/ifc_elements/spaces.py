@@ -11,6 +11,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 )
 from scanplan.exports.ifc_model import IfcModel
 from scanplan.exports.model_colours import colour_of
+from scanplan.geometry import overlays
 from scanplan.plan.floorplan import HEIGHTS, FloorPlan
 from scanplan.types import Array
 
@@ -57,7 +58,7 @@ def add_floors(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
 
 def floor_parts(plan: FloorPlan) -> Array:
     """Return the connected parts of rooms and walls, Polygons, the largest first."""
-    parts = shapely.get_parts(shapely.union_all([*plan.areas, *plan.bodies]))
+    parts = shapely.get_parts(overlays.unite_areas([*plan.areas, *plan.bodies]))
     return parts[np.argsort(-shapely.area(parts), kind="stable")]
 
 

@@ -3,7 +3,6 @@
 from collections import defaultdict
 
 import numpy as np
-import shapely
 from ifcopenshell import entity_instance
 
 from scanplan.exports.ifc_elements.storey_plan import (
@@ -15,6 +14,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import vertical_extent_m
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 
@@ -85,7 +85,7 @@ def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_in
             "Width": left_m[row] + right_m[row],
             "Height": height_m,
             "GrossFootprintArea": body.area,
-            "NetFootprintArea": body.difference(shapely.union_all(ways)).area,
+            "NetFootprintArea": overlays.subtract_areas(body, overlays.unite_areas(ways)).area,
             "GrossSideArea": length_m * height_m,
             "NetSideArea": length_m * height_m - open_m2,
             "GrossVolume": body.area * height_m,
@@ -100,7 +100,9 @@ def _cut_out(plan: FloorPlan, row: int) -> tuple[float, float]:
     for opening in np.flatnonzero(plan.hosts == row).tolist():
         low_m, high_m = vertical_extent_m(plan, opening)
         area_m2 += float(plan.openings["width_m"][opening]) * (high_m - low_m)
-        volume_m3 += plan.bodies[row].intersection(plan.gaps[opening]).area * (high_m - low_m)
+        volume_m3 += overlays.intersect_areas(plan.bodies[row], plan.gaps[opening]).area * (
+            high_m - low_m
+        )
     return area_m2, volume_m3
 
 

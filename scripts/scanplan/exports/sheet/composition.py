@@ -15,6 +15,7 @@ from scanplan.exports.sheet.paper import Page, choose_page, fill_slots
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.exports.sheet.title import SheetFacts
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import END_M
@@ -202,10 +203,10 @@ def _dimension(
     openings_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
     half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
     openings = floorplan.buffer_lines(openings_m, half_m)
-    built = shapely.union_all([*plan.bodies, *rooms, *openings])
+    built = overlays.unite_areas([*plan.bodies, *rooms, *openings])
     if built.is_empty:
         lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
-        drawn = page.place_shape(shapely.union_all(lines)).envelope
+        drawn = page.place_shape(overlays.unite_lines(lines)).envelope
         outline = known = drawn
     else:
         closed = floorplan.close_gaps(built)
@@ -217,7 +218,7 @@ def _dimension(
         for symbol in symbols
         for path in symbol_paths(symbol)
     ]
-    reach = shapely.union_all([drawn, *swings])
+    reach = overlays.unite_shapes([drawn, *swings])
     return list(
         dimensions.dimension_facades(page, outline, reach, known, uncertain, openings_m, space)
     )
@@ -229,10 +230,10 @@ def _leave_loose_walls(built: BaseGeometry, plan: FloorPlan) -> BaseGeometry:
     All of it where most ground of walls bounds no room that is known.
     """
     parts = shapely.get_parts(built)
-    rooms = shapely.union_all(plan.areas)
-    bodies = shapely.union_all(plan.bodies)
-    building = shapely.union_all(parts[shapely.dwithin(parts, rooms, END_M)])
-    is_most = 2 * shapely.intersection(bodies, building).area > bodies.area
+    rooms = overlays.unite_areas(plan.areas)
+    bodies = overlays.unite_areas(plan.bodies)
+    building = overlays.unite_areas(parts[shapely.dwithin(parts, rooms, END_M)])
+    is_most = 2 * overlays.intersect_areas(bodies, building).area > bodies.area
     return building if is_most else built
 
 
@@ -240,13 +241,13 @@ def _find_uncertain(plan: FloorPlan) -> BaseGeometry:
     """Return the spans of rooms' outlines that were not seen, and walls that are to be verified."""
     unseen_m = floorplan.centrelines_m(plan.unseen)
     doubtful = plan.bodies[content.is_doubtful(plan.walls)]
-    return shapely.union_all([*floorplan.line_shapes(unseen_m), *doubtful])
+    return overlays.unite_shapes([*floorplan.line_shapes(unseen_m), *doubtful])
 
 
 def _find_known(plan: FloorPlan, building: BaseGeometry) -> BaseGeometry:
     """Return the ground of rooms, and of walls of the building of which both sides were seen."""
-    bodies = shapely.intersection(shapely.union_all(plan.known_bodies), building)
-    return shapely.union_all([*plan.areas, bodies])
+    bodies = overlays.intersect_areas(overlays.unite_areas(plan.known_bodies), building)
+    return overlays.unite_areas([*plan.areas, bodies])
 
 
 def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:
@@ -310,7 +311,9 @@ def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
 def surround_symbol(page: Page, symbol: Symbol) -> FloatArray:
     """Return a line (n, 2) around a doubtful or corrected opening, map frame."""
     half_m = symbol.thickness_m / 2 + _apart_m(page)
-    return shapely.get_coordinates(shapely.buffer(shapely.LineString(symbol.ends_m), half_m))
+    return shapely.get_coordinates(
+        overlays.buffer_shapes(shapely.LineString(symbol.ends_m), half_m)
+    )
 
 
 def _apart_m(page: Page) -> float:

@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns, FloatArray
@@ -81,8 +82,8 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     known["wall"] = ~known["inferred"] & ~known["low"]
     above = shapely.Polygon()
     for kind in ("wall", "inferred", "low"):
-        shape = shapely.difference(_footprint(plan, known[kind]), above)
-        above = shapely.union(above, shape)
+        shape = overlays.subtract_areas(_footprint(plan, known[kind]), above)
+        above = overlays.unite_each(above, shape)
         for number, part in enumerate(_polygons(shape)):
             yield _area(kind, part, f"{kind}-{number}", kind)
     for kind, state in (("surface", "observed"), ("surface-inferred", "inferred")):
@@ -120,7 +121,7 @@ def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:
     """Yield lines around the walls that a person corrected, so far from them, likewise."""
     for row in np.flatnonzero(is_corrected(plan.walls)).tolist():
         number, said = plan.walls["wall"][row], plan.walls["corrected"][row]
-        around = shapely.buffer(plan.bodies[row], apart_m, join_style="mitre")
+        around = overlays.buffer_shapes(plan.bodies[row], apart_m, join_style="mitre")
         facts = facts_of("wall", plan.walls, row)
         yield _area("corrected", around, f"corrected-wall-{number}", f"wall {number} {said}", facts)
 
@@ -170,8 +171,8 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
 
 
 def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
-    bodies = shapely.union_all(plan.known_bodies[is_wanted[plan.thick]])
-    return shapely.difference(bodies, shapely.union_all(plan.gaps))
+    bodies = overlays.unite_areas(plan.known_bodies[is_wanted[plan.thick]])
+    return overlays.subtract_areas(bodies, overlays.unite_areas(plan.gaps))
 
 
 def _area(

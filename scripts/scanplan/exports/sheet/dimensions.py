@@ -13,6 +13,7 @@ from scanplan.exports.sheet.lettering import measure_width_mm, rotation
 from scanplan.exports.sheet.marks import Dimension, Word
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.geometry import overlays
 from scanplan.plan.floorplan import line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, FloatArray
@@ -73,7 +74,7 @@ def dimension_facades(
         stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
         about = _find_assumed_ends(turned, turned_known, gap)
         upright = _find_upright_edges(turned)
-        uncertain_strip = turned_uncertain.buffer(gap)
+        uncertain_strip = overlays.buffer_shapes(turned_uncertain, gap)
         about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, gap)}
         level = turned_reach.bounds[1]
         if len(stops) > 2:
@@ -106,12 +107,12 @@ def _is_beside(
     """Return whether most of the side that a stop (x, y) is an end of is uncertain."""
     x, y = stop
     west, _, east, _ = shapely.bounds(upright).T
-    at_x = shapely.union_all(upright[(west - gap <= x) & (x <= east + gap)])
-    sides = shapely.get_parts(at_x.buffer(gap))
-    side = shapely.intersection(
-        at_x, shapely.union_all(sides[shapely.dwithin(sides, shapely.Point(x, y), gap)])
+    at_x = overlays.unite_lines(upright[(west - gap <= x) & (x <= east + gap)])
+    sides = shapely.get_parts(overlays.buffer_shapes(at_x, gap))
+    side = overlays.intersect_lines(
+        at_x, overlays.unite_areas(sides[shapely.dwithin(sides, shapely.Point(x, y), gap)])
     )
-    return bool(shapely.intersection(side, uncertain_strip).length > side.length / 2)
+    return bool(overlays.intersect_lines(side, uncertain_strip).length > side.length / 2)
 
 
 def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
@@ -200,7 +201,7 @@ def _draw_chain(
             continue
         line = np.array([[start[0], level], [end[0], level]])
         length_mm = line[1, 0] - line[0, 0]
-        is_about = bool(about.intersection((start[0], end[0])))
+        is_about = not about.isdisjoint((start[0], end[0]))
         words = _state_length(page, length_mm, is_about=is_about)
         candidates = _beside_line(line @ turn, words)
         chosen = space.place(candidates)
@@ -315,7 +316,7 @@ def _find_chord(room: BaseGeometry, y: float, beside: float) -> FloatArray | Non
 
 def _longest_level(room: BaseGeometry, y: float) -> FloatArray | None:
     x0, _, x1, _ = room.bounds
-    cut = shapely.intersection(room, shapely.LineString([(x0 - 1, y), (x1 + 1, y)]))
+    cut = overlays.intersect_lines(room, shapely.LineString([(x0 - 1, y), (x1 + 1, y)]))
     parts = [part for part in shapely.get_parts(cut) if part.length > 0]
     if not parts:
         return None

@@ -8,6 +8,7 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings import building, extrusion, truth
 from scanplan.lab.buildings.building_route import ROVER_RADIUS_M
 from scanplan.lab.random_streams import RandomStream, open_stream
@@ -35,8 +36,8 @@ def add_clutter(
     seed : int
     """
     generator = open_stream(seed, RandomStream.CLUTTER)
-    way = LineString(site.waypoints_m).buffer(1.2 * ROVER_RADIUS_M)
-    taken = shapely.union_all([way, site.obstacles_m])
+    way = overlays.buffer_shapes(LineString(site.waypoints_m), 1.2 * ROVER_RADIUS_M)
+    taken = overlays.unite_areas([way, site.obstacles_m])
     shapely.prepare(taken)
     openings = [feature for feature in site.truth if feature[1]["kind"] == "opening"]
     hung = {values["opening"] for _, values in site.truth if values["kind"] == "leaf"}
@@ -60,7 +61,7 @@ def add_clutter(
         site,
         mesh=extrusion.extend_mesh(site.mesh, soups),
         truth=[*site.truth, *map(truth.screen_feature, outlines)],
-        obstacles_m=shapely.union_all([site.obstacles_m, *leaves, *legs]),
+        obstacles_m=overlays.unite_areas([site.obstacles_m, *leaves, *legs]),
     )
 
 
@@ -83,7 +84,7 @@ def _draw_leaves(
         turn = turn_rad if side else -turn_rad
         rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         leaf = LineString([pivot, pivot + rotation @ (other - pivot)])
-        body = leaf.buffer(_CHAIR_M[1] / 2, cap_style="flat")
+        body = overlays.buffer_shapes(leaf, _CHAIR_M[1] / 2, cap_style="flat")
         if is_ajar and not body.intersects(way):
             yield body
 

@@ -8,6 +8,7 @@ import shapely
 from shapely import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import drawn_floor
 from scanplan.lab.buildings.details import ceilings, leaves, solids
@@ -69,8 +70,8 @@ def describe_faces(
 
     `material` is glass of a pane, `curved` is true of a curved wall.
     """
-    curves = drawn_floor.cut_curves(plan).buffer(10 * SAME_M)
-    panes = drawn_floor.cut_walls(plan, slice_height_m, glass=True).buffer(DRAWN_M)
+    curves = overlays.buffer_shapes(drawn_floor.cut_curves(plan), 10 * SAME_M)
+    panes = overlays.buffer_shapes(drawn_floor.cut_walls(plan, slice_height_m, glass=True), DRAWN_M)
     described = []
     for line, side in faces:
         for piece, is_pane in _part_line(line, panes):
@@ -121,8 +122,8 @@ def ceiling_values(plan: drawn_floor.DrawnFloor, room: BaseGeometry) -> dict[str
 
 def _part_line(line_m: LineString, area: BaseGeometry) -> list[tuple[LineString, bool]]:
     """Return the pieces of a straight line, in its direction, and whether each is in an area."""
-    pieces = [(part, True) for part in shapely.get_parts(line_m.intersection(area))]
-    pieces += [(part, False) for part in shapely.get_parts(line_m.difference(area))]
+    pieces = [(part, True) for part in shapely.get_parts(overlays.intersect_lines(line_m, area))]
+    pieces += [(part, False) for part in shapely.get_parts(overlays.subtract_lines(line_m, area))]
     parts = []
     for piece, is_inside in pieces:
         if piece.length > CRACK_M:
@@ -146,7 +147,7 @@ def _panes(plan: drawn_floor.DrawnFloor) -> Iterator[tuple[BaseGeometry, float, 
         for run in runs:
             # a pane's middle line is drawn up to that of the wall which it ends in
             solid = drawn_floor.cut_walls(plan, wall.height_m / 2, glass=False)
-            for part in shapely.get_parts(run.difference(solid)):
+            for part in shapely.get_parts(overlays.subtract_lines(run, solid)):
                 yield from _panes_of_run(plan, part, wall.height_m)
 
 
@@ -156,11 +157,11 @@ def _panes_of_run(
     """Yield what openings leave of a straight run of a pane: beside them, below and above."""
     rest = run
     for opening in plan.openings:
-        hole = opening.line_m.buffer(DRAWN_M + opening.bow_m, cap_style="flat")
-        over = run.intersection(hole)
+        hole = overlays.buffer_shapes(opening.line_m, DRAWN_M + opening.bow_m, cap_style="flat")
+        over = overlays.intersect_lines(run, hole)
         if not opening.in_glass or over.length <= CRACK_M:
             continue
-        rest = rest.difference(hole)
+        rest = overlays.subtract_lines(rest, hole)
         if opening.sill_m > CRACK_M:
             yield over, 0.0, opening.sill_m
         if opening.lintel_m < height_m - CRACK_M:

@@ -9,6 +9,7 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings.details.ceilings import low_ground
 from scanplan.lab.buildings.details.leaves import stand_leaves
@@ -89,12 +90,12 @@ def cut_walls(plan: DrawnFloor, z_m: float, *, glass: bool | None = None) -> Bas
     as walls where both are asked for.
     """
     bodies = [body for body, height_m, _ in _bodies(plan, glass) if z_m < height_m]
-    solid = shapely.union_all(bodies, grid_size=SAME_M)
+    solid = overlays.unite_areas(bodies, grid=SAME_M)
     holes = (_hole(opening, z_m, whole=glass is True) for opening in plan.openings)
-    hole = shapely.union_all([h for h in holes if h is not None], grid_size=SAME_M)
+    hole = overlays.unite_areas([h for h in holes if h is not None], grid=SAME_M)
     if glass:
-        hole = shapely.union(hole, cut_walls(plan, z_m, glass=False), grid_size=SAME_M)
-    return shapely.difference(solid, hole, grid_size=SAME_M).normalize()
+        hole = overlays.unite_each(hole, cut_walls(plan, z_m, glass=False), grid=SAME_M)
+    return overlays.subtract_areas(solid, hole, grid=SAME_M).normalize()
 
 
 def cut_wall_bands(
@@ -120,13 +121,13 @@ def cut_wall_bands(
 def cut_curves(plan: DrawnFloor) -> BaseGeometry:
     """Return the ground that curved walls stand on."""
     curved = [_body(wall) for wall in plan.walls if wall.is_curved]
-    return shapely.union_all(curved, grid_size=SAME_M)
+    return overlays.unite_areas(curved, grid=SAME_M)
 
 
 def floor_footprint(plan: DrawnFloor) -> BaseGeometry:
     """Return the whole floor with the walls on it: all that the outer faces enclose."""
     filled = [Polygon(part.exterior) for part in shapely.get_parts(_footprint_of_walls(plan))]
-    return shapely.union_all(filled, grid_size=SAME_M)
+    return overlays.unite_areas(filled, grid=SAME_M)
 
 
 def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
@@ -138,13 +139,17 @@ def floor_rooms(plan: DrawnFloor) -> list[tuple[str, Polygon]]:
         Name ("" where none is drawn) and floor, without voids, in a fixed order.
     """
     walls = _footprint_of_walls(plan)
-    free = shapely.difference(floor_footprint(plan), walls, grid_size=SAME_M).normalize()
+    free = overlays.subtract_areas(floor_footprint(plan), walls, grid=SAME_M).normalize()
     rooms = [room for room in shapely.get_parts(free) if not room.is_empty]
     if plan.voids:
-        hole = shapely.union_all([void.footprint_m for void in plan.voids], grid_size=SAME_M)
-        parts = [room.difference(hole, grid_size=SAME_M).normalize() for room in rooms]
+        hole = overlays.unite_areas([void.footprint_m for void in plan.voids], grid=SAME_M)
+        parts = [overlays.subtract_areas(room, hole, grid=SAME_M).normalize() for room in rooms]
         # what a void leaves of the ground within its parapet is no room
-        rooms = [r for r in shapely.get_parts(parts) if not r.buffer(-ROOM_M / 2).is_empty]
+        rooms = [
+            r
+            for r in shapely.get_parts(parts)
+            if not overlays.buffer_shapes(r, -ROOM_M / 2).is_empty
+        ]
     return [(_name_of_room(plan, room), room) for room in rooms]
 
 
@@ -173,11 +178,11 @@ def floor_obstacles(plan: DrawnFloor, height_m: float) -> BaseGeometry:
     standing = [thing.footprint_m for thing in things]
     doors = [body.footprint_m for o in plan.openings for body in stand_leaves(o)]
     low = [ground for c in plan.ceilings if (ground := low_ground(c, head_m)).area > 0]
-    return shapely.union_all([*sections, *panes, *boxes, *standing, *doors, *low])
+    return overlays.unite_areas([*sections, *panes, *boxes, *standing, *doors, *low])
 
 
 def _footprint_of_walls(plan: DrawnFloor) -> BaseGeometry:
-    return shapely.union_all([body for body, _, _ in _bodies(plan)], grid_size=SAME_M)
+    return overlays.unite_areas([body for body, _, _ in _bodies(plan)], grid=SAME_M)
 
 
 def _name_of_room(plan: DrawnFloor, room: Polygon) -> str:
@@ -206,7 +211,7 @@ def _hole(opening: DrawnOpening, z_m: float, *, whole: bool) -> BaseGeometry | N
         return None
     line_m = opening.line_m if whole else opening.clear_line_m
     half_m = opening.thickness_m / 2 + opening.bow_m + DRAWN_M
-    return line_m.buffer(half_m, cap_style="flat")
+    return overlays.buffer_shapes(line_m, half_m, cap_style="flat")
 
 
 def _body(wall: DrawnWall) -> BaseGeometry:
@@ -239,4 +244,4 @@ def _last_of(run_m: FloatArray, length_m: float) -> FloatArray:
 
 
 def _thick(line_m: LineString, thickness_m: float) -> BaseGeometry:
-    return line_m.buffer(thickness_m / 2, cap_style="flat", join_style="mitre")
+    return overlays.buffer_shapes(line_m, thickness_m / 2, cap_style="flat", join_style="mitre")

@@ -8,6 +8,7 @@ from shapely import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import slicing, storeys
 from scanplan.lab.buildings.tolerances import CRACK_M, DRAWN_M, MESHING_M, ROOM_M, THRESHOLD_M
@@ -124,9 +125,9 @@ def _tall_outlines(
 def _section(soups: list[list[FloatArray]], z_m: float) -> tuple[BaseGeometry, BaseGeometry]:
     """Return matter and sheets of surfaces, each split into its bodies."""
     sections = [slicing.cut_section(bodies_m, z_m) for bodies_m in soups]
-    solid = shapely.union_all([s for s, _ in sections], grid_size=SAME_M)
-    sheets = shapely.union_all([s for _, s in sections], grid_size=SAME_M)
-    return solid, sheets.difference(solid.buffer(2 * SAME_M))
+    solid = overlays.unite_areas([s for s, _ in sections], grid=SAME_M)
+    sheets = overlays.unite_lines([s for _, s in sections], grid=SAME_M)
+    return solid, overlays.subtract_lines(sheets, overlays.buffer_shapes(solid, 2 * SAME_M))
 
 
 def _shadow(soups: list[list[FloatArray]], height_m: float) -> BaseGeometry:
@@ -136,16 +137,16 @@ def _shadow(soups: list[list[FloatArray]], height_m: float) -> BaseGeometry:
     pieces = []
     for z_m in np.linspace(THRESHOLD_M, top_m, n_cuts):
         solid, sheets = _section(soups, z_m)
-        pieces += [solid, sheets.buffer(DRAWN_M)]
-    return shapely.union_all(pieces, grid_size=MESHING_M)
+        pieces += [solid, overlays.buffer_shapes(sheets, DRAWN_M)]
+    return overlays.unite_areas(pieces, grid=MESHING_M)
 
 
 def _filled(shadow: BaseGeometry) -> BaseGeometry:
     """Return all that outer walls enclose, gaps closed."""
-    wide = shadow.buffer(ROOM_M, join_style="mitre")
-    closed = wide.buffer(-ROOM_M + DRAWN_M, join_style="mitre")
+    wide = overlays.buffer_shapes(shadow, ROOM_M, join_style="mitre")
+    closed = overlays.buffer_shapes(wide, -ROOM_M + DRAWN_M, join_style="mitre")
     filled = [Polygon(part.exterior) for part in _polygons(closed)]
-    return shapely.union_all([*filled, shadow], grid_size=MESHING_M)
+    return overlays.unite_areas([*filled, shadow], grid=MESHING_M)
 
 
 def _floor(
@@ -157,14 +158,18 @@ def _floor(
         for _, triangles_m in body.surfaces:
             is_low = (np.abs(triangles_m[..., 2]) <= THRESHOLD_M).all(axis=1)
             level.append(_level_outlines(triangles_m[is_low]))
-    floor = shapely.union_all(shapely.polygons(np.concatenate(level)), grid_size=MESHING_M)
-    if floor.difference(solid).area < _MIN_FLOOR_SHARE * outline.area:
+    floor = overlays.unite_areas(shapely.polygons(np.concatenate(level)), grid=MESHING_M)
+    if overlays.subtract_areas(floor, solid).area < _MIN_FLOOR_SHARE * outline.area:
         note = (
             f"{source}: has no floor at z = 0; the rover drives on all that the outer walls enclose"
         )
         return outline, (note,)
-    closed = floor.buffer(ROOM_M / 2, join_style="mitre").buffer(-ROOM_M / 2, join_style="mitre")
-    return closed.intersection(outline, grid_size=MESHING_M), ()
+    closed = overlays.buffer_shapes(
+        overlays.buffer_shapes(floor, ROOM_M / 2, join_style="mitre"),
+        -ROOM_M / 2,
+        join_style="mitre",
+    )
+    return overlays.intersect_areas(closed, outline, grid=MESHING_M), ()
 
 
 def _level_outlines(triangles_m: FloatArray) -> FloatArray:
@@ -188,10 +193,12 @@ def _obstacles(storey: storeys.Storey, solid: BaseGeometry, slice_height_m: floa
     within = triangles_m[is_within]
     edges = within[:, [[0, 1], [1, 2], [2, 0]], :2].reshape(-1, 2, 2)
     ends = np.unique(np.round(np.concatenate([*cuts, edges]), 3).reshape(-1, 4), axis=0)
-    lines = shapely.buffer(shapely.linestrings(ends.reshape(-1, 2, 2)), DRAWN_M, quad_segs=1)
+    lines = overlays.buffer_shapes(
+        shapely.linestrings(ends.reshape(-1, 2, 2)), DRAWN_M, quad_segs=1
+    )
     tops = shapely.get_parts(shapely.polygons(_level_outlines(within)))
     pieces = [*shapely.get_parts(lines), *tops, solid]
-    return shapely.union_all(pieces, grid_size=DRAWN_M)
+    return overlays.unite_areas(pieces, grid=DRAWN_M)
 
 
 def _space_rooms(storey: storeys.Storey, slice_height_m: float) -> list[tuple[str, Polygon]]:
@@ -207,9 +214,11 @@ def _space_rooms(storey: storeys.Storey, slice_height_m: float) -> list[tuple[st
 
 def _enclosed_rooms(outline: BaseGeometry, shadow: BaseGeometry) -> list[tuple[str, Polygon]]:
     """Return the rooms between the walls, without names."""
-    free = outline.difference(shadow, grid_size=MESHING_M).normalize()
-    wide = [part for part in _polygons(free) if not part.buffer(-ROOM_M / 2).is_empty]
-    return [("", shapely.simplify(room, 2 * MESHING_M)) for room in wide]
+    free = overlays.subtract_areas(outline, shadow, grid=MESHING_M).normalize()
+    wide = [
+        part for part in _polygons(free) if not overlays.buffer_shapes(part, -ROOM_M / 2).is_empty
+    ]
+    return [("", overlays.simplify_shapes(room, 2 * MESHING_M)) for room in wide]
 
 
 def _polygons(geometry: BaseGeometry) -> list[Polygon]:

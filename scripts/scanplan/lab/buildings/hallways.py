@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings.tolerances import ROOM_M
 
 _HALL_WIDTH_M = 3.5  # ASSUME a hallway is no wider; those of ring_office have 3.2 m
@@ -23,8 +24,8 @@ def find_hallways(rooms: Rooms) -> list[tuple[str, Polygon]]:
 
 def join_hallways(halls: Rooms) -> BaseGeometry:
     """Return the largest area of hallways that meet; what lies between two joins them."""
-    union = shapely.union_all([hall for _, hall in halls])
-    joined = union.buffer(ROOM_M, join_style="mitre")
+    union = overlays.unite_areas([hall for _, hall in halls])
+    joined = overlays.buffer_shapes(union, ROOM_M, join_style="mitre")
     return max(shapely.get_parts(joined), key=lambda part: part.area, default=Polygon())
 
 

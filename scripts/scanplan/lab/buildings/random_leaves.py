@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from shapely import LineString
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings import building, detailed_truth, extrusion, ground, truth
 from scanplan.lab.buildings.building_route import ROVER_RADIUS_M
 from scanplan.lab.buildings.details import solids
@@ -65,15 +66,15 @@ def hang_leaves(
         return replace(site, notes=(*site.notes, note))
     taken = site.obstacles_m
     if waypoints_m is not None:
-        way = LineString(np.asarray(waypoints_m, float)).buffer(1.2 * clearance_m)
-        taken = shapely.union(taken, way)
+        way = overlays.buffer_shapes(LineString(np.asarray(waypoints_m, float)), 1.2 * clearance_m)
+        taken = overlays.unite_each(taken, way)
     hung: list[tuple[int, list[LeafBody]]] = []
     for row, opening in site.doorways:
         generator = open_stream(seed, RandomStream.LEAVES, row)
         if generator.random() < share:
             stands = (b for b in _draw_leaves(opening, generator) if _is_free(b, taken))
             bodies = next(stands, [])
-            taken = shapely.union_all([taken, *(body.footprint_m for body in bodies)])
+            taken = overlays.unite_areas([taken, *(body.footprint_m for body in bodies)])
             hung.append((row, bodies))
     bodies = [body for _, leaves in hung for body in leaves]
     if not bodies:
@@ -87,7 +88,9 @@ def hang_leaves(
         site,
         mesh=extrusion.extend_mesh(site.mesh, solids.leaf_soups(bodies)),
         truth=[*site.truth, *features],
-        obstacles_m=shapely.union_all([site.obstacles_m, *(body.footprint_m for body in bodies)]),
+        obstacles_m=overlays.unite_areas(
+            [site.obstacles_m, *(body.footprint_m for body in bodies)]
+        ),
         doorways=tuple(doorway for doorway in site.doorways if doorway[0] not in rows_hung),
     )
 
@@ -111,7 +114,7 @@ def _draw_leaves(opening: DrawnOpening, generator: np.random.Generator) -> Itera
 
 def _is_free(bodies: list[LeafBody], taken: BaseGeometry) -> bool:
     """Return whether leaves stand in nothing else; what they touch, such as a jamb, is let be."""
-    cores = [body.footprint_m.buffer(-0.9 * body.drawn.play_m) for body in bodies]
+    cores = [overlays.buffer_shapes(body.footprint_m, -0.9 * body.drawn.play_m) for body in bodies]
     return not any(core.intersects(taken) for core in cores)
 
 

@@ -10,7 +10,7 @@ from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
-from scanplan.geometry import roadmap, tour
+from scanplan.geometry import overlays, roadmap, tour
 from scanplan.geometry.roadmap import RoadmapGrid
 from scanplan.lab.buildings import hallways
 from scanplan.lab.buildings.hallways import Rooms
@@ -160,8 +160,8 @@ def free_ground(
 ) -> BaseGeometry:
     """Return where the rover's middle can be: `clearance_m` from obstacles and the floor's edge."""
     # a buffer's arc is a polygon inside the circle; a millimetre more covers the difference
-    blocked = obstacles_m.buffer(clearance_m + 0.001, quad_segs=16)
-    return shapely.difference(floor_m.buffer(-clearance_m), blocked)
+    blocked = overlays.buffer_shapes(obstacles_m, clearance_m + 0.001, quad_segs=16)
+    return overlays.subtract_areas(overlays.buffer_shapes(floor_m, -clearance_m), blocked)
 
 
 def _asked_rooms(
@@ -173,7 +173,7 @@ def _asked_rooms(
     lacking = "no rooms"
     if kind == "hallways":
         halls = hallways.find_hallways(rooms)
-        area_m = hallways.join_hallways(halls).intersection(floor_m)
+        area_m = overlays.intersect_areas(hallways.join_hallways(halls), floor_m)
         asked = [(name, hall) for name, hall in halls if area_m.intersects(hall)]
         lacking = f"no hallway among its {len(rooms)} rooms; set simulate.site.route: rooms"
     if not asked:
@@ -205,8 +205,10 @@ def _part_of(
     polygons = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
     parts = [part for part in polygons if part.area > 0]
     if start_m is None:
-        floors = shapely.union_all([room for _, room in rooms])
-        return max(parts, key=lambda part: part.intersection(floors).area, default=Polygon())
+        floors = overlays.unite_areas([room for _, room in rooms])
+        return max(
+            parts, key=lambda part: overlays.intersect_areas(part, floors).area, default=Polygon()
+        )
     for part in parts:
         if part.covers(Point(start_m)):
             return part

@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from shapely import LineString, MultiLineString
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings.tolerances import CRACK_M, MESHING_M
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -87,9 +88,11 @@ def cut_section(
     """
     cuts = [cut_triangles(body_m, z_m) for body_m in bodies_m]
     sections = [_body_section(ends_m, max_solid_m) for ends_m in cuts if len(ends_m)]
-    solid = shapely.union_all([s for s, _ in sections], grid_size=SAME_M)
-    sheets = shapely.union_all([s for _, s in sections], grid_size=SAME_M)
-    return solid, _only_lines(shapely.difference(sheets, solid.buffer(2 * SAME_M)))
+    solid = overlays.unite_areas([s for s, _ in sections], grid=SAME_M)
+    sheets = overlays.unite_lines([s for _, s in sections], grid=SAME_M)
+    return solid, _only_lines(
+        overlays.subtract_lines(sheets, overlays.buffer_shapes(solid, 2 * SAME_M))
+    )
 
 
 def section_faces(
@@ -110,10 +113,12 @@ def section_faces(
         `outside` where a surface can only be seen from outside the footprint, else `inside`; in a
         fixed order. Matter is on the left of the lines that bound any.
     """
-    oriented = shapely.orient_polygons(solid.simplify(2 * MESHING_M)).normalize()
+    oriented = shapely.orient_polygons(overlays.simplify_shapes(solid, 2 * MESHING_M)).normalize()
     runs = straight_runs(shapely.orient_polygons(oriented), 2 * MESHING_M)
     bounds = [LineString(run) for run in runs]
-    loose = shapely.get_parts(shapely.line_merge(sheets).simplify(2 * MESHING_M).normalize())
+    loose = shapely.get_parts(
+        overlays.simplify_shapes(overlays.merge_lines(sheets), 2 * MESHING_M).normalize()
+    )
     screens = [LineString(run) for line in loose for run in pairwise(line.coords)]
     sided = [(line, (-CRACK_M,)) for line in bounds]
     sided += [(line, (CRACK_M, -CRACK_M)) for line in screens]
@@ -132,13 +137,15 @@ def section_centrelines(solid: BaseGeometry) -> list[tuple[LineString, float]]:
     list of (LineString, float)
         Centreline and thickness of every strip that is matter throughout and longer than thick.
     """
-    runs = straight_runs(shapely.orient_polygons(solid.simplify(2 * MESHING_M)), 2 * MESHING_M)
+    runs = straight_runs(
+        shapely.orient_polygons(overlays.simplify_shapes(solid, 2 * MESHING_M)), 2 * MESHING_M
+    )
     strips = (_strip(a, b) for a, b in combinations(runs, 2))
-    matter = solid.buffer(4 * MESHING_M)
+    matter = overlays.buffer_shapes(solid, 4 * MESHING_M)
     return [
         (line, thickness_m)
         for line, thickness_m in filter(None, strips)
-        if matter.covers(line.buffer(thickness_m / 2, cap_style="flat"))
+        if matter.covers(overlays.buffer_shapes(line, thickness_m / 2, cap_style="flat"))
     ]
 
 
@@ -156,9 +163,9 @@ def find_screens(outlines: Iterable[BaseGeometry], walls: BaseGeometry) -> list[
     -------
     list of LineString, each straight
     """
-    union = shapely.union_all(list(outlines), grid_size=SAME_M)
-    free = _only_lines(shapely.difference(union, walls.buffer(2 * SAME_M)))
-    lines = shapely.line_merge(free).simplify(2 * MESHING_M).normalize()
+    union = overlays.unite_lines(list(outlines), grid=SAME_M)
+    free = _only_lines(overlays.subtract_lines(union, overlays.buffer_shapes(walls, 2 * SAME_M)))
+    lines = overlays.simplify_shapes(overlays.merge_lines(free), 2 * MESHING_M).normalize()
     return [LineString(run) for line in shapely.get_parts(lines) for run in pairwise(line.coords)]
 
 
@@ -196,13 +203,13 @@ def _crossing(
 
 
 def _body_section(ends_m: FloatArray, max_solid_m: float) -> tuple[BaseGeometry, MultiLineString]:
-    noded = shapely.union_all(shapely.linestrings(ends_m), grid_size=SAME_M)
-    cells = shapely.get_parts(shapely.polygonize([noded]))
+    noded = overlays.unite_lines(shapely.linestrings(ends_m), grid=SAME_M)
+    cells = shapely.get_parts(overlays.enclose_areas([noded]))
     matter = [c for c in cells if _crossing_count(c.representative_point(), ends_m) % 2]
     if np.isfinite(max_solid_m):
-        matter = [c for c in matter if c.buffer(-max_solid_m / 2).is_empty]
-    solid = shapely.union_all(matter, grid_size=SAME_M)
-    return solid, _only_lines(shapely.difference(noded, solid, grid_size=SAME_M))
+        matter = [c for c in matter if overlays.buffer_shapes(c, -max_solid_m / 2).is_empty]
+    solid = overlays.unite_areas(matter, grid=SAME_M)
+    return solid, _only_lines(overlays.subtract_lines(noded, solid, grid=SAME_M))
 
 
 def _crossing_count(point: shapely.Point, ends_m: FloatArray) -> int:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings import detailed_truth, drawn_floor, ground, slicing
 from scanplan.lab.buildings.details.things import DrawnOpening, DrawnWall
@@ -101,8 +102,8 @@ def true_wall_faces(
     """
     section = shapely.orient_polygons(drawn_floor.cut_walls(plan, slice_height_m))
     # a vertex in the middle of a straight wall is where another wall ended in the drawing
-    section = section.simplify(SAME_M)
-    skin = shapely.boundary(drawn_floor.floor_footprint(plan)).buffer(10 * SAME_M)
+    section = overlays.simplify_shapes(section, SAME_M)
+    skin = overlays.buffer_shapes(shapely.boundary(drawn_floor.floor_footprint(plan)), 10 * SAME_M)
     runs = slicing.straight_runs(section, SAME_M)
     lines = [LineString(run) for run in runs]
     return [(line, "outside" if skin.covers(line) else "inside") for line in lines]

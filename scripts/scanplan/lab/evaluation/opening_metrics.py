@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.lab.evaluation import length_metrics
@@ -35,7 +36,7 @@ def measure_doors(
         Precision counts all true doors. Without doors to find or drawn, recall or precision is 1.
     """
     entered = [room for room, was_entered in zip(rooms, visited, strict=True) if was_entered]
-    apart_m = shapely.distance(shapely.linestrings(true_m), shapely.union_all(entered))
+    apart_m = shapely.distance(shapely.linestrings(true_m), overlays.unite_areas(entered))
     return _measure_openings("door", drawn_m, true_m, np.asarray(apart_m <= WALL_M))
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import length_metrics, opening_metrics, wall_findings
 from scanplan.lab.evaluation.face_cells import FaceCells
@@ -91,7 +92,7 @@ def moved_faces_m(drawn: Mapping[str, Columns], motion: FloatArray) -> FloatArra
     A side that a column stands against a wall with is no surface, and is left out.
     """
     faces_m = length_metrics.table_lines_m(drawn["faces"])
-    walls = shapely.union_all(shapely.linestrings(faces_m)).buffer(CELL_M)
+    walls = overlays.buffer_shapes(overlays.unite_lines(shapely.linestrings(faces_m)), CELL_M)
     sides_m = _column_sides_m(drawn["furniture"])
     is_free = ~shapely.covers(walls, shapely.linestrings(sides_m))
     return _moved(np.concatenate([faces_m, sides_m[is_free]]), motion)
@@ -235,7 +236,7 @@ def measure_rooms(
     shapes = np.array(drawn, object)
     iou = np.zeros((len(true), len(drawn)))
     for row, room in zip(iou, true, strict=True):
-        shared_m2 = shapely.area(shapely.intersection(room, shapes))
+        shared_m2 = shapely.area(overlays.intersect_areas(room, shapes))
         row[:] = shared_m2 / (room.area + shapely.area(shapes) - shared_m2)
     best = iou.max(axis=1, initial=0.0)[visited]
     of_drawn = iou.max(axis=0, initial=0.0)

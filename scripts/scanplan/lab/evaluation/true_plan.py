@@ -10,6 +10,7 @@ from shapely.geometry import MultiPolygon, shape
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import truth_file
 from scanplan.types import BoolArray, FilePath, FloatArray
 
@@ -71,7 +72,7 @@ def read_true_plan(path: FilePath) -> TruePlan:
             elif kind == "opening" and properties["type"] in _OPENINGS:
                 openings_m[_OPENINGS[properties["type"]]].append(_line(feature))
             elif kind == "room":
-                rooms.append(shapely.make_valid(shape(feature["geometry"])))
+                rooms.append(overlays.repair_areas(shape(feature["geometry"])))
                 visited.append(bool(properties["visited"]))
         except (KeyError, TypeError, ValueError, shapely.errors.ShapelyError) as error:
             raise StageError(
@@ -107,13 +108,15 @@ def join_touching(rooms: Sequence[BaseGeometry]) -> list[tuple[BaseGeometry, lis
     list of (geometry, list of int)
         Each space, and the rows of the rooms that it is made of.
     """
-    grown = [shapely.buffer(room, _TOUCH_M) for room in rooms]
+    grown = [overlays.buffer_shapes(room, _TOUCH_M) for room in rooms]
     joined = []
     for rows in _touching_groups(grown):
         if len(rows) == 1:
             joined.append((rooms[rows[0]], rows))
         else:
-            space = shapely.union_all([grown[row] for row in rows]).buffer(-_TOUCH_M)
+            space = overlays.buffer_shapes(
+                overlays.unite_areas([grown[row] for row in rows]), -_TOUCH_M
+            )
             joined.append((MultiPolygon(shapely.get_parts(space).tolist()), rows))
     return joined
 
@@ -123,7 +126,7 @@ def _touching_groups(grown: Sequence[BaseGeometry]) -> list[list[int]]:
     group = list(range(len(grown)))
     for one in range(len(grown)):
         for other in range(one):
-            if shapely.intersection(grown[one], grown[other]).area > 2 * _TOUCH_M * _SHARED_M:
+            if overlays.intersect_areas(grown[one], grown[other]).area > 2 * _TOUCH_M * _SHARED_M:
                 old, new = group[one], group[other]
                 group = [new if g == old else g for g in group]
     return [[row for row, g in enumerate(group) if g == name] for name in dict.fromkeys(group)]

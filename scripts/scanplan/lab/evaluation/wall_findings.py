@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import se3
+from scanplan.geometry import overlays, se3
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation import bitmap_shares, face_cells, length_metrics, visible_faces
 from scanplan.lab.evaluation.bitmap_shares import DrawnCells, TrueBitmap
@@ -129,7 +129,7 @@ def observe_truth(
     visible = seen.any(axis=0) | by_survey
     if not rooms:
         return VisibleTruth(cells, seen, visible, visible)
-    outline = shapely.union_all([room.boundary for room in rooms])
+    outline = overlays.unite_lines([room.boundary for room in rooms])
     bounds_room = shapely.dwithin(outline, shapely.points(cells.middle_m), face_cells.CELL_M)
     return VisibleTruth(cells, seen, visible, visible & bounds_room)
 

@@ -8,6 +8,7 @@ import shapely
 from shapely import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import raycast
 from scanplan.types import FloatArray
@@ -56,7 +57,7 @@ def simulate_walkers(
     tuple of Person
         Empty where there is no room to walk.
     """
-    room = shapely.buffer(free, -CLEARANCE_M)
+    room = overlays.buffer_shapes(free, -CLEARANCE_M)
     if room.is_empty:
         return ()
     shapely.prepare(room)

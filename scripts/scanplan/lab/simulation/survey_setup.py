@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings import building, building_route, clutter, random_leaves
 from scanplan.lab.buildings.truth import Feature
 from scanplan.lab.evaluation import visible_faces
@@ -126,7 +127,7 @@ def prepare_survey(
     lidar = sensor_models.make_sensor(**sensor)
     base_from_sensor = rover.mount_sensor(**mount)
     way = plan_motion(site.waypoints_m, base_from_sensor, **drive, seed=seed)
-    free = site.floor_m.difference(site.obstacles_m)
+    free = overlays.subtract_areas(site.floor_m, site.obstacles_m)
     return sweeps.SimulatedSurvey(
         mesh=site.mesh,
         sensor=lidar,

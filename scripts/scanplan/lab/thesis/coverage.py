@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import visible_faces
 from scanplan.lab.evaluation.truth_file import TrueFaces
 from scanplan.selection import area_greedy, hulls
@@ -117,9 +118,9 @@ def seen_polygons(faces: TrueFaces, places_m: FloatArray, *, max_range_m: float)
     ]
     # neighbouring corners that coincide make an outline touch itself; a line has no area
     touching = np.array([shapely.Polygon(outline) for outline in outlines])
-    seen = shapely.make_valid(touching, method="structure", keep_collapsed=False)
-    discs = shapely.buffer(shapely.points(places_m), max_range_m)
-    return np.asarray(shapely.intersection(seen, discs))
+    seen = overlays.repair_areas(touching, method="structure", keep_collapsed=False)
+    discs = overlays.buffer_shapes(shapely.points(places_m), max_range_m)
+    return np.asarray(overlays.intersect_areas(seen, discs))
 
 
 def polygon_iou(polygons: Array, seen: Array) -> FloatArray:
@@ -127,6 +128,6 @@ def polygon_iou(polygons: Array, seen: Array) -> FloatArray:
 
     It is 0 where both are empty.
     """
-    shared_m2 = np.asarray(shapely.area(shapely.intersection(polygons, seen)))
-    joint_m2 = np.asarray(shapely.area(shapely.union(polygons, seen)))
+    shared_m2 = np.asarray(shapely.area(overlays.intersect_areas(polygons, seen)))
+    joint_m2 = np.asarray(shapely.area(overlays.unite_each(polygons, seen)))
     return np.divide(shared_m2, joint_m2, out=np.zeros(len(shared_m2)), where=joint_m2 > 0)

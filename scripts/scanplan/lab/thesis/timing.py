@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from scanplan.extraction import extractors
 from scanplan.extraction.extractors import Extractor
+from scanplan.geometry import overlays
 from scanplan.lab.thesis.claim_measures import CHOOSING, LITERAL, MERGING, ORDERING, THINNED
 from scanplan.lab.thesis.shown_figures import THESIS_SCANS
 from scanplan.lab.thesis.stated_claims import Sizes
@@ -151,7 +152,7 @@ def order_literally(polygons: Array) -> list[int]:
     left = list(range(len(polygons)))
     union = shapely.Polygon()
     while left:
-        unions = shapely.union(union, polygons[left])
+        unions = overlays.unite_each(union, polygons[left])
         best = int(np.argmax(shapely.area(unions)))
         union = unions[best]
         order.append(left.pop(best))

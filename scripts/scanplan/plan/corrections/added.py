@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
@@ -113,7 +114,7 @@ def _cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
     half_m = np.array([_half_m(wall) + REACH_M])
     (gap,) = floorplan.buffer_lines(ends_m[None], half_m)
     for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
-        parts = shapely.get_parts(shapely.difference(_line(face), gap))
+        parts = shapely.get_parts(overlays.subtract_lines(_line(face), gap))
         parts = parts[shapely.length(parts) > 0]
         if len(parts) == 0:
             rows.faces.remove(face)

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Sequence
 
-import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
 from scanplan.plan.faces.face_tree import FaceTree
@@ -42,8 +42,8 @@ def find_blocks(
     most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
     faces = FaceTree(list_faces(walls))
     unpaired_m = measure_thickness_m(walls)
-    solid = shapely.union_all(wall_ground.wall_strips(walls, unpaired_m))
-    ground_before = shapely.difference(floor, solid)
+    solid = overlays.unite_areas(wall_ground.wall_strips(walls, unpaired_m))
+    ground_before = overlays.subtract_areas(floor, solid)
     alone = []
     others = []
     for wall in (wall for wall in walls if wall.right):
@@ -60,7 +60,7 @@ def find_blocks(
         # what stands alone may be a partition, which is thinner; an island says nothing of walls
         known = [*others, *(one for one, *_ in alone if one.thickness_m < wall.thickness_m)]
         if known and _is_thick(ground, measure_thickness_m(known)):
-            blocks.append(Pocket(ground.buffer(CELL_M, join_style="mitre"), near))
+            blocks.append(Pocket(overlays.buffer_shapes(ground, CELL_M, join_style="mitre"), near))
     return blocks
 
 
@@ -79,16 +79,16 @@ def is_block(
 
 def _is_thick(ground: BaseGeometry, wall_m: float) -> bool:
     """Return whether ground is clearly wider than walls are thick."""
-    return rectangle_sides_m(ground.buffer(-CELL_M))[0] > 2 * wall_m
+    return rectangle_sides_m(overlays.buffer_shapes(ground, -CELL_M))[0] > 2 * wall_m
 
 
 def _stands_alone(
     ground: BaseGeometry, part: BaseGeometry, *, max_thickness_m: float, max_depth_m: float
 ) -> bool:
     """Return whether floor is around ground longer than a column and no larger than furniture."""
-    if rectangle_sides_m(ground.buffer(-CELL_M))[1] <= max_thickness_m or is_large(
+    if rectangle_sides_m(overlays.buffer_shapes(ground, -CELL_M))[1] <= max_thickness_m or is_large(
         ground, max_depth_m
     ):
         return False
-    around = ground.buffer(CORNER_M).difference(ground)
-    return around.intersection(part).area >= ALONG_SHARE * around.area
+    around = overlays.subtract_areas(overlays.buffer_shapes(ground, CORNER_M), ground)
+    return overlays.intersect_areas(around, part).area >= ALONG_SHARE * around.area

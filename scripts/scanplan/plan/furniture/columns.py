@@ -9,6 +9,7 @@ from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.plan import wall_ground
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.plan_wall import PlanWall
@@ -53,7 +54,7 @@ def tell_columns(
     """
     if rays.planar:
         return list(pieces)
-    solid = shapely.union_all(list(walls))
+    solid = overlays.unite_areas(list(walls))
     return [_tell(piece, rays, solid, furniture_height_m, max_width_m) for piece in pieces]
 
 
@@ -84,10 +85,12 @@ def find_column_faces(
     strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
 
     def is_side(number: int, wall: PlanWall) -> bool:
-        others = shapely.union_all([*strips[:number], *strips[number + 1 :]])
+        others = overlays.unite_areas([*strips[:number], *strips[number + 1 :]])
         if (shapely.distance(shapely.points(wall.ends), others) <= END_M).any():
             return False
-        around = _ground_around(wall, max_width_m).difference(others.buffer(FACE_M))
+        around = overlays.subtract_areas(
+            _ground_around(wall, max_width_m), overlays.buffer_shapes(others, FACE_M)
+        )
         if around.is_empty:
             return False
         outline = max(shapely.get_parts(around), key=lambda part: part.area)
@@ -194,7 +197,7 @@ def _extend_to(drawn: Polygon, solid: BaseGeometry) -> Polygon:
         along = (end_m - start_m) / np.hypot(*(end_m - start_m))
         away_m = (FACE_M + 2 * CELL_M) * np.array([along[1], -along[0]])
         beyond = Polygon([start_m, start_m + away_m, end_m + away_m, end_m])
-        met = shapely.intersection(beyond, solid)
+        met = overlays.intersect_areas(beyond, solid)
         if met.area > 0:
             gap_m = shapely.LineString([start_m, end_m]).distance(solid)
             step_m = gap_m * away_m / np.hypot(*away_m)

@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.blocks import find_blocks
 from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
@@ -82,7 +83,7 @@ def drop_fronts(
 
     def find_hidden(pockets: Sequence[Pocket]) -> list[Pocket]:
         grounds = [pocket.ground for pocket in pockets]
-        seen_m2 = shapely.area(shapely.intersection(grounds, seen))
+        seen_m2 = shapely.area(overlays.intersect_areas(grounds, seen))
         return [
             pocket
             for pocket, of_it_m2 in zip(pockets, seen_m2, strict=True)

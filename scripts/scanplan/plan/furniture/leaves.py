@@ -13,6 +13,7 @@ from shapely import STRtree
 from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall, list_faces
@@ -38,7 +39,7 @@ class Leaf:
     @property
     def ground(self) -> BaseGeometry:
         """What it stands on: as thick as ends err by."""
-        return LineString(self.face.ends).buffer(END_M, cap_style="square")
+        return overlays.buffer_shapes(LineString(self.face.ends), END_M, cap_style="square")
 
     def cut_off(self, face: FaceInterval) -> list[FaceInterval]:
         """Return a surface, or it and the rest of the one that it was seen as a part of."""
@@ -191,7 +192,11 @@ def _is_other_side(face: FaceInterval, other: FaceInterval) -> bool:
 
 def _beside_m(face: FaceInterval, other: FaceInterval, most_m: float) -> float:
     """Return how much of another surface lies no farther from a surface than that, metres."""
-    return float(LineString(other.ends).intersection(LineString(face.ends).buffer(most_m)).length)
+    return float(
+        overlays.intersect_lines(
+            LineString(other.ends), overlays.buffer_shapes(LineString(face.ends), most_m)
+        ).length
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +219,7 @@ class _Way:
 
     def cut(self, face: FaceInterval) -> list[FaceInterval]:
         """Return a surface, or its pieces on either side: no wall runs on through a way."""
-        across = LineString(face.ends).intersection(LineString(self.ends_m))
+        across = overlays.cross_lines(LineString(face.ends), LineString(self.ends_m))
         if across.geom_type != "Point" or across.is_empty:
             return [face]
         (at_m,) = face.line.along_m(np.array(across.coords)).tolist()

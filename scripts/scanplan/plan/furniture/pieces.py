@@ -13,7 +13,7 @@ from scipy import ndimage
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import bitmap
+from scanplan.geometry import bitmap, overlays
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, FACE_M, LEAST_SCANS, LOW_PERCENT
 from scanplan.rays.face_raster import CELL_M
@@ -92,16 +92,16 @@ def find_pieces(
     list of Piece
         The largest first.
     """
-    solid = shapely.union_all(shapely.buffer(np.array(walls, object), FACE_M))
-    near = shapely.union_all(list(rooms)).buffer(CORNER_M)
-    ground = shapely.difference(near, solid)
+    solid = overlays.unite_areas(overlays.buffer_shapes(np.array(walls, object), FACE_M))
+    near = overlays.buffer_shapes(overlays.unite_areas(list(rooms)), CORNER_M)
+    ground = overlays.subtract_areas(near, solid)
     if ground.is_empty:
         return []
     # `fill_polygons` asks for a column beyond
-    x0_m, y0_m, x1_m, y1_m = ground.buffer(CELL_M).bounds
+    x0_m, y0_m, x1_m, y1_m = overlays.buffer_shapes(ground, CELL_M).bounds
     grid = bitmap.fit_grid([[(x0_m, y0_m), (x1_m, y1_m)]], CELL_M)
     returns = _gather_returns(rays, grid, bitmap.fill_polygons([ground], grid), max_height_m)
-    taken = shapely.intersection(shapely.union_all(list(hidden)), ground)
+    taken = overlays.intersect_areas(overlays.unite_areas(list(hidden)), ground)
     is_taken = bitmap.fill_polygons([taken], grid)
     # a front that all scans together show is no passer
     is_passer = _find_passers(returns, grid, views if rays.planar else [])
@@ -122,7 +122,7 @@ def find_pieces(
 
 def pieces_in_rooms(pieces: Sequence[Piece], rooms: Sequence[Polygon]) -> list[Piece]:
     """Return the pieces that stand in a room, a part of them at least."""
-    ground = shapely.union_all(list(rooms))
+    ground = overlays.unite_areas(list(rooms))
     return [piece for piece in pieces if piece.outline.intersects(ground)]
 
 
@@ -162,7 +162,7 @@ def _find_passers(returns: _Returns, grid: bitmap.Grid, views: Sequence[BaseGeom
     n_free = np.zeros(len(cells), np.int64)
     for view in views:
         # a ray that ends in a cell goes over a part of it
-        inner = view.buffer(-grid.cell_m)
+        inner = overlays.buffer_shapes(view, -grid.cell_m)
         shapely.prepare(inner)
         n_free += shapely.contains_xy(inner, middle_m)
     stays = cells[(n_shown >= LEAST_SCANS) & (n_shown > n_free)]
@@ -208,8 +208,10 @@ def _draw_outline(middle_m: FloatArray, cell_m: float) -> Polygon:
     """Return the outline of cells (n, 2) that are a cell apart at most, half a cell around them."""
     reach_m = 1.5 * cell_m
     boxes = shapely.box(*(middle_m - reach_m).T, *(middle_m + reach_m).T)
-    grown = shapely.union_all(boxes, grid_size=cell_m / 100)
-    drawn = grown.buffer(-cell_m / 2, join_style="mitre").simplify(cell_m)
+    grown = overlays.unite_areas(boxes, grid=cell_m / 100)
+    drawn = overlays.simplify_shapes(
+        overlays.buffer_shapes(grown, -cell_m / 2, join_style="mitre"), cell_m
+    )
     return max(shapely.get_parts(drawn), key=lambda part: part.area)
 
 

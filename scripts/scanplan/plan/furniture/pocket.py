@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan.faces.intervals import FaceInterval
@@ -32,12 +33,12 @@ class Pocket:
 
 def is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
     """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""
-    depth_m, length_m = rectangle_sides_m(ground.buffer(-CELL_M))
+    depth_m, length_m = rectangle_sides_m(overlays.buffer_shapes(ground, -CELL_M))
     is_row = depth_m <= max_depth_m and length_m <= POCKET_M2 / max_depth_m
     return ground.area > (POCKET_M2 if is_row else FURNITURE_M2)
 
 
 def faces_on(ground: BaseGeometry, faces: Sequence[FaceInterval]) -> list[FaceInterval]:
     """Return the surfaces that lie on ground, or on its edges."""
-    around = ground.buffer(CORNER_M)
+    around = overlays.buffer_shapes(ground, CORNER_M)
     return [face for face in faces if around.covers(LineString(face.ends))]

@@ -13,6 +13,7 @@ import shapely
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intersections import run_across
 from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan import wall_ground
@@ -61,16 +62,16 @@ def find_pockets(
     list of Pocket
     """
     strips = wall_ground.wall_strips(walls, unpaired_m)
-    solid = shapely.union_all(strips)
+    solid = overlays.unite_areas(strips)
     parts = np.array(
-        [*free_space.open_polygons(shapely.difference(floor, solid), END_M), Polygon()], object
+        [*free_space.open_polygons(overlays.subtract_areas(floor, solid), END_M), Polygon()], object
     )
-    known = shapely.union_all([floor, solid]).buffer(CELL_M, join_style="mitre")
+    known = overlays.buffer_shapes(overlays.unite_areas([floor, solid]), CELL_M, join_style="mitre")
     alone = [face for wall in walls if not wall.right for face in wall.left]
     search = _Search(
         faces=PlanFaces(list_faces(walls)),
         parts=parts,
-        grown=shapely.buffer(parts, CELL_M),
+        grown=overlays.buffer_shapes(parts, CELL_M),
         single={id(face) for face in alone},
         opened=set(map(id, list_faces([wall for wall in walls if wall.openings]))),
         continued={id(face) for wall in walls for face in _find_continued(wall)},
@@ -127,7 +128,9 @@ class _Search:
             for face in near
             if id(face) in self.single and _backs_onto(face, hidden, self.unpaired_m)
         ]
-        seen_m2 = shapely.area(shapely.intersection(hidden.buffer(CORNER_M), self.parts))
+        seen_m2 = shapely.area(
+            overlays.intersect_areas(overlays.buffer_shapes(hidden, CORNER_M), self.parts)
+        )
         if not seen_m2.any():
             return None
         row = int(np.argmax(seen_m2))
@@ -153,7 +156,7 @@ class _Search:
         ]
         if not outer:
             return None
-        ahead_m = shapely.length(shapely.intersection(_before(outer[0]), self.parts))
+        ahead_m = shapely.length(overlays.intersect_lines(_before(outer[0]), self.parts))
         part = self.parts[int(np.argmax(ahead_m)) if ahead_m.any() else row]
         with_sides = [face for face in behind if face in outer or _faces_onto(face, part)]
         return _make_pocket(hidden, with_sides, self.unpaired_m)
@@ -199,14 +202,16 @@ def _make_pocket(hidden: Polygon, fronts: Sequence[FaceInterval], unpaired_m: fl
         Polygon([*face.ends, *(face.ends - unpaired_m * face.line.normal)[::-1]]) for face in fronts
     ]
     # returns at a front scatter before it, where floor ends
-    ground = shapely.union_all([hidden, *strips]).buffer(CELL_M, join_style="mitre")
+    ground = overlays.buffer_shapes(
+        overlays.unite_areas([hidden, *strips]), CELL_M, join_style="mitre"
+    )
     return Pocket(ground, list(fronts))
 
 
 def _backs_onto(face: FaceInterval, hidden: Polygon, unpaired_m: float) -> bool:
     """Return whether most of a surface has hidden ground close behind it."""
     behind = _beside(face, -unpaired_m - END_M)
-    return behind.intersection(hidden).length >= behind.length / 2
+    return overlays.intersect_lines(behind, hidden).length >= behind.length / 2
 
 
 def _find_continued(wall: PlanWall) -> Iterator[FaceInterval]:
@@ -241,7 +246,7 @@ def _goes_on(pocket: Pocket, continued: set[int]) -> bool:
 def _faces_onto(face: FaceInterval, part: Polygon) -> bool:
     """Return whether most of a surface has a part of the floor before it."""
     before = _before(face)
-    return before.intersection(part).length >= before.length / 2
+    return overlays.intersect_lines(before, part).length >= before.length / 2
 
 
 def _before(face: FaceInterval) -> LineString:
@@ -260,8 +265,11 @@ def _is_part_of_building(pocket: Pocket, part: Polygon, max_depth_m: float) -> b
     """
     if not _has_corner_in(pocket.ground, part):
         return True
-    fronts = shapely.union_all([LineString(face.ends) for face in pocket.fronts])
-    bare = pocket.ground.boundary.intersection(part).difference(fronts.buffer(CORNER_M))
+    fronts = overlays.unite_lines([LineString(face.ends) for face in pocket.fronts])
+    bare = overlays.subtract_lines(
+        overlays.intersect_lines(pocket.ground.boundary, part),
+        overlays.buffer_shapes(fronts, CORNER_M),
+    )
     return is_large(pocket.ground, max_depth_m) and bare.length < BEHIND_M
 
 
@@ -270,13 +278,13 @@ def _has_corner_in(ground: BaseGeometry, part: Polygon) -> bool:
 
     What fills a room from wall to wall may be a closet behind a wall as well.
     """
-    exposed = ground.boundary.intersection(part)
+    exposed = overlays.intersect_lines(ground.boundary, part)
     return min(rectangle_sides_m(exposed)) >= BEHIND_M
 
 
 def _is_before_wall(pocket: Pocket, faces: Sequence[FaceInterval], part: Polygon) -> bool:
     """Return whether a wall runs on behind a pocket, that floor of its room ends at beside it."""
-    near = shapely.intersection(pocket.ground.buffer(CORNER_M), part)
+    near = overlays.intersect_areas(overlays.buffer_shapes(pocket.ground, CORNER_M), part)
     corners_m = shapely.get_coordinates(pocket.ground)
     for face in faces:
         off_m = face.line.offset_m(corners_m)
@@ -288,7 +296,9 @@ def _is_before_wall(pocket: Pocket, faces: Sequence[FaceInterval], part: Polygon
             continue
         reach_m = np.array([first_m - CORNER_M, last_m + CORNER_M])
         floor_m, passed_m = (
-            LineString(face.line.at(reach_m) + away_m * face.line.normal).intersection(near).length
+            overlays.intersect_lines(
+                LineString(face.line.at(reach_m) + away_m * face.line.normal), near
+            ).length
             for away_m in (CELL_M, -CORNER_M)
         )
         if floor_m >= END_M and passed_m < floor_m / 2:

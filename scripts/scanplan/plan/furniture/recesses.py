@@ -7,6 +7,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.plan_faces import PlanFaces
@@ -24,7 +25,7 @@ def find_holes(known: BaseGeometry) -> Iterator[Polygon]:
     """Yield the holes of known ground no larger than furniture, by what it was grown by larger."""
     for part in free_space.polygon_parts(known).geoms:
         for ring in part.interiors:
-            hole = Polygon(ring).buffer(CELL_M, join_style="mitre")
+            hole = overlays.buffer_shapes(Polygon(ring), CELL_M, join_style="mitre")
             if hole.area <= POCKET_M2:
                 yield hole
 
@@ -44,7 +45,7 @@ def find_recesses(
     max_depth_m : float
         Of furniture, from its front to its back.
     """
-    seen = floor.buffer(CELL_M)
+    seen = overlays.buffer_shapes(floor, CELL_M)
     for front in fronts:
         for wall, _ in _find_walls_behind(front, faces, max_depth_m):
             foot_m = wall.line.at(wall.line.along_m(front.ends))
@@ -52,7 +53,7 @@ def find_recesses(
             hidden = free_space.difference_on_grid(between, seen)
             largest = max(hidden.geoms, key=lambda part: part.area, default=None)
             if largest is not None and largest.area >= ALONG_SHARE * between.area:
-                yield front, largest.buffer(CELL_M, join_style="mitre")
+                yield front, overlays.buffer_shapes(largest, CELL_M, join_style="mitre")
 
 
 def stands_before_facade(

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry import Point
 
+from scanplan.geometry import overlays
 from scanplan.geometry.intersections import LEAST_RAD
 from scanplan.plan.faces.face_tree import FaceTree
 from scanplan.plan.faces.intervals import FaceInterval
@@ -66,8 +67,8 @@ def _choose_few(short: Sequence[PlanWall], apart_m: float) -> list[PlanWall]:
     """
     ends_m = np.array([wall.ends for wall in short]).reshape(-1, 2, 2)
     lines = np.asarray(shapely.linestrings(ends_m), object)
-    grown = shapely.buffer(lines, apart_m / 2)
-    group = shapely.get_parts(shapely.union_all(grown))
+    grown = overlays.buffer_shapes(lines, apart_m / 2)
+    group = shapely.get_parts(overlays.unite_areas(grown))
     inside = shapely.intersects(lines[:, None], group[None])
     is_few = inside.sum(axis=0) < FEW
     return [wall for wall, of in zip(short, inside, strict=True) if is_few[of].all()]

@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import intersections, narrow_places
+from scanplan.geometry import intersections, narrow_places, overlays
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
 from scanplan.plan.openings import GAP, OPEN, Opening
@@ -46,8 +46,10 @@ def find_glass_walls(
         How thick a wall is taken for of which one side is known.
     """
     ways = [(wall, opening) for wall in walls for opening in wall.openings]
-    grounds = [wall_ground.opening_polygon(*way, unpaired_m).buffer(END_M) for way in ways]
-    open_m2 = shapely.union_all(grounds)
+    grounds = [
+        overlays.buffer_shapes(wall_ground.opening_polygon(*way, unpaired_m), END_M) for way in ways
+    ]
+    open_m2 = overlays.unite_areas(grounds)
     shapely.prepare(open_m2)
     stacked = intersections.stack_spans(walls)
     extended = (_extend(*span, walls, stacked) for span in spans)
@@ -71,8 +73,10 @@ def _cut_known(pane: PlanWall, known: Sequence[PlanWall], unpaired_m: float) -> 
     # wider by what lines err, and no longer: panes may meet at a mullion
     inner = [replace(p, low_m=p.low_m + END_M, high_m=p.high_m - END_M) for p in along]
     strips = wall_ground.wall_strips(inner, unpaired_m)
-    ground = shapely.union_all([strip.buffer(END_M, join_style="mitre") for strip in strips])
-    rest = shapely.difference(LineString(pane.ends), ground)
+    ground = overlays.unite_areas(
+        [overlays.buffer_shapes(strip, END_M, join_style="mitre") for strip in strips]
+    )
+    rest = overlays.subtract_lines(LineString(pane.ends), ground)
     if rest.length >= pane.length_m - free_space.GRID_M:
         return [pane]
     parts = shapely.get_parts(rest)
@@ -122,11 +126,11 @@ def find_partings(
     """
     strips = wall_ground.wall_strips(bounds, unpaired_m)
     tree = shapely.STRtree(strips)
-    known = shapely.union_all(strips).buffer(END_M)
+    known = overlays.buffer_shapes(overlays.unite_areas(strips), END_M)
     doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
     # no narrower than the cells that narrow places are looked for in
     ways = wall_ground.wall_strips(doors, unpaired_m)
-    grown = [way.buffer(CELL_M, join_style="mitre") for way in ways]
+    grown = [overlays.buffer_shapes(way, CELL_M, join_style="mitre") for way in ways]
     solid = free_space.union_on_grid([*strips, *grown])
     # what is as narrow as a chair's leg casts a shadow, which is no place to stop at
     whole = free_space.close_shadows(floor, END_M) if planar else floor
@@ -137,7 +141,7 @@ def find_partings(
         gaps_m = _find_line_gaps(bounds, tree, free, max_width_m, unpaired_m, hidden)
     # shorter ones may be sides of what stands in a room
     is_long = [planar and wall.length_m > 2 * max_width_m for wall in bounds]
-    walls = shapely.union_all(list(itertools.compress(strips, is_long)))
+    walls = overlays.unite_areas(list(itertools.compress(strips, is_long)))
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
             *(part, track_m, gaps_m, walls),
@@ -203,7 +207,7 @@ def _find_free_line(
     behind_m = unpaired_m / 2 if math.isnan(wall.thickness_m) else 0.0
     ray_m = wall.line.at(end_m + np.array([0.0, way_m])) - behind_m * wall.line.normal
     start = shapely.Point(ray_m[0])
-    over = shapely.intersection(free, LineString(ray_m))
+    over = overlays.intersect_lines(free, LineString(ray_m))
     pieces = [piece for piece in shapely.get_parts(over) if piece.geom_type == "LineString"]
     first = min(pieces, key=start.distance, default=None)
     if first is None or start.distance(first) > CORNER_M or first.length <= CORNER_M:
@@ -216,7 +220,7 @@ def _find_free_line(
 def _seen_m(gap_m: FloatArray, hidden: BaseGeometry | None) -> float:
     """Return how much of a line (2, 2) over floor furniture does not hide."""
     across = LineString(gap_m)
-    return across.length if hidden is None else shapely.difference(across, hidden).length
+    return across.length if hidden is None else overlays.subtract_lines(across, hidden).length
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:
@@ -242,7 +246,7 @@ def _choose_ways(ways_m: Sequence[FloatArray], solid: BaseGeometry) -> list[Floa
     chosen: list[FloatArray] = []
     for way_m in ways_m:
         middle = shapely.Point(way_m.mean(axis=0))
-        known = [solid, *(LineString(other).buffer(CORNER_M) for other in chosen)]
+        known = [solid, *(overlays.buffer_shapes(LineString(other), CORNER_M) for other in chosen)]
         if not any(shape.covers(middle) for shape in known):
             chosen.append(way_m)
     return chosen

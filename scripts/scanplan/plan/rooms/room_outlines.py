@@ -7,7 +7,7 @@ import shapely
 from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import bare_parts
+from scanplan.geometry import bare_parts, overlays
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
@@ -95,7 +95,7 @@ def find_rooms(
             walled = bare_parts.walled_share(polygon.exterior, outline)
             shapely.prepare(polygon)
             is_entered = bool(shapely.contains(polygon, track).any())
-            is_wide = not polygon.buffer(-min_width_m / 2).is_empty
+            is_wide = not overlays.buffer_shapes(polygon, -min_width_m / 2).is_empty
             is_room = is_entered or (walled >= min_walled and is_wide)
             if is_room and polygon.area >= min_area_m2:
                 found.append((polygon, walled, is_entered))
@@ -117,7 +117,7 @@ def count_scans(polygon: Polygon, all_views: Array) -> int:
         What each scan saw.
     """
     near = all_views[shapely.intersects(polygon, all_views)]
-    seen_m2 = shapely.area(shapely.intersection(polygon, near))
+    seen_m2 = shapely.area(overlays.intersect_areas(polygon, near))
     return int((seen_m2 >= CORNER_M**2).sum())
 
 
@@ -154,14 +154,16 @@ def _draw_room(
     rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= 2 * END_M]
     outline: BaseGeometry = MultiPolygon()
     if rows:
-        outline = shapely.union_all([strips[row] for row in rows]).buffer(END_M)
+        outline = overlays.buffer_shapes(overlays.unite_areas([strips[row] for row in rows]), END_M)
     drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
     others = free_space.union_on_grid([solid, occupied])
     polygon = _largest(free_space.difference_on_grid(drawn, others))
     shapely.prepare(part)
     visits = track[shapely.contains(part, track)]
     if polygon is not None and (shapely.distance(polygon, visits) > CORNER_M).any():
-        polygon = _largest(free_space.difference_on_grid(part.simplify(CELL_M), others))
+        polygon = _largest(
+            free_space.difference_on_grid(overlays.simplify_shapes(part, CELL_M), others)
+        )
     return polygon, outline
 
 
@@ -177,12 +179,12 @@ def _fill_cells(
     It is the part of the floor itself where they do not agree with it. A cell that walls enclose
     was seen well enough at a quarter: what hides the rest is in the room.
     """
-    rough = part.simplify(CELL_M)
+    rough = overlays.simplify_shapes(part, CELL_M)
     cells = _cells(rough, walls, unpaired_m)
     if len(cells) == 0:
         return rough
     shapely.prepare(rough)
-    share = shapely.area(shapely.intersection(cells, rough)) / shapely.area(cells)
+    share = shapely.area(overlays.intersect_areas(cells, rough)) / shapely.area(cells)
     is_floor = share > 1 - share
     for row in np.flatnonzero(~is_floor & (share > _LEAST_CELL_SHARE)):
         is_floor[row] = bare_parts.walled_share(cells[row].exterior, outline) >= CLOSED_SHARE
@@ -190,8 +192,8 @@ def _fill_cells(
     drawn = _largest(free_space.difference_on_grid(ground, solid))
     if drawn is None:
         return rough
-    common_m2 = shapely.intersection(drawn, rough).area
-    agreement = common_m2 / shapely.union(drawn, rough).area
+    common_m2 = overlays.intersect_areas(drawn, rough).area
+    agreement = common_m2 / overlays.unite_each(drawn, rough).area
     is_closed = bare_parts.walled_share(drawn.exterior, outline) >= CLOSED_SHARE
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
@@ -201,10 +203,10 @@ def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> 
     lines = [line for wall in walls for line in _bounding_lines(wall, part, unpaired_m)]
     if len(lines) < 3:
         return np.empty(0, object)
-    frame = shapely.box(*part.buffer(_MARGIN_M).bounds)
-    drawing = np.array([frame.exterior, *shapely.intersection(lines, frame)], object)
-    noded = shapely.union_all(drawing, grid_size=free_space.GRID_M)
-    polygons = shapely.get_parts(shapely.polygonize(shapely.get_parts(noded)))
+    frame = shapely.box(*overlays.buffer_shapes(part, _MARGIN_M).bounds)
+    drawing = np.array([frame.exterior, *overlays.intersect_lines(lines, frame)], object)
+    noded = overlays.unite_lines(drawing, grid=free_space.GRID_M)
+    polygons = shapely.get_parts(overlays.enclose_areas(shapely.get_parts(noded)))
     cells = np.array(list(polygons), object)
     is_inside = shapely.covers(frame, shapely.point_on_surface(cells))
     return cells[is_inside & (shapely.area(cells) > free_space.GRID_M**2)]

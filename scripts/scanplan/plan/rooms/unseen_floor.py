@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import bare_parts
+from scanplan.geometry import bare_parts, overlays
 from scanplan.geometry.narrow_places import FURNITURE_M2
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
@@ -61,7 +61,7 @@ def leave_out_unseen(
         A room that falls apart becomes those parts that sensors were in, or its largest part.
     """
     outline, bounds = (
-        shapely.union_all(wall_ground.wall_strips(of, unpaired_m)).buffer(END_M)
+        overlays.buffer_shapes(overlays.unite_areas(wall_ground.wall_strips(of, unpaired_m)), END_M)
         for of in (walls, [*walls, *partings])
     )
     way = bare_parts.draw_way(track_m, END_M)
@@ -89,13 +89,17 @@ def _without_unseen(
     max_unseen: float,
 ) -> list[Polygon]:
     """Return what of a polygon was seen, or may be hidden, see `leave_out_unseen`."""
-    edge = polygon.boundary.buffer(2 * free_space.GRID_M)
-    bare = polygon.boundary.difference(outline).buffer(2 * free_space.GRID_M)
+    edge = overlays.buffer_shapes(polygon.boundary, 2 * free_space.GRID_M)
+    bare = overlays.buffer_shapes(
+        overlays.subtract_lines(polygon.boundary, outline), 2 * free_space.GRID_M
+    )
 
     def is_hidden(part: Polygon) -> bool:
         # edges of shadows are longer than what they leave bare
-        mouth = shapely.line_merge(part.boundary.difference(edge)).simplify(END_M)
-        bared_m = mouth.length - part.boundary.intersection(bare).length
+        mouth = overlays.simplify_shapes(
+            overlays.merge_lines(overlays.subtract_lines(part.boundary, edge)), END_M
+        )
+        bared_m = mouth.length - overlays.intersect_lines(part.boundary, bare).length
         is_at_wall = part.intersects(outline) or part.area <= FURNITURE_M2
         return is_at_wall and part.area <= max_depth_m * bared_m
 

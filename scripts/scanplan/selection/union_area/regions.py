@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import unite_polygons
+from scanplan.geometry import overlays
 from scanplan.types import Array, IntArray
 
 
@@ -46,7 +46,7 @@ class Regions:
         window = self._window[some]
         for i in np.unique(window):
             if self._pending[i]:
-                self._union[i] = unite_polygons(np.array([self._union[i], *self._pending[i]]))
+                self._union[i] = overlays.unite_areas([self._union[i], *self._pending[i]])
                 shapely.prepare(self._union[i])
                 self._pending[i] = []
         return self._union[window]

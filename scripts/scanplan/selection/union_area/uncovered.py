@@ -3,7 +3,8 @@
 import numpy as np
 import shapely
 
-from scanplan.geometry.polygons import Polygons, move_near_origin, subtract_polygons
+from scanplan.geometry import overlays
+from scanplan.geometry.polygons import Polygons, move_near_origin
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.selection.union_area.cell_bounds import CellBounds, list_members
 from scanplan.selection.union_area.regions import Regions
@@ -156,7 +157,7 @@ class Uncovered:
     def _subtract(self, parts: IntArray, others: Array) -> None:
         if len(parts) == 0:
             return
-        left = subtract_polygons(self._left[parts], others)
+        left = overlays.subtract_areas(self._left[parts], others)
         self._left[parts] = left
         self._left_box[parts] = shapely.bounds(left).reshape(-1, 4)
         self._measured[parts] = True

@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings.details.things import DrawnCeiling, Plane
 from scanplan.types import FloatArray
 
@@ -30,7 +31,7 @@ def part_below(area: BaseGeometry, plane: Plane, other: Plane) -> BaseGeometry:
     reach_m = size_m + abs(above_middle_m) / steepness
     corners_m = [on_line_m - along, on_line_m + along]
     corners_m += [on_line_m + along + down * reach_m, on_line_m - along + down * reach_m]
-    return shapely.intersection(area, Polygon(corners_m))
+    return overlays.intersect_areas(area, Polygon(corners_m))
 
 
 def low_ground(ceiling: DrawnCeiling, z_m: float) -> BaseGeometry:
@@ -59,7 +60,7 @@ def ceiling_range(
     Strips narrower than 2 cm, which a drawing leaves between a ceiling and the walls, do not count.
     """
     surfaces = [(room, Plane(main_m))]
-    surfaces += [(room.intersection(c.footprint_m), c.underside) for c in ceilings]
+    surfaces += [(overlays.intersect_areas(room, c.footprint_m), c.underside) for c in ceilings]
     heights_m = []
     for row, (area, plane) in enumerate(surfaces):
         lower = [
@@ -67,8 +68,8 @@ def ceiling_range(
             for other_row, (other, other_plane) in enumerate(surfaces)
             if other_row != row
         ]
-        seen = shapely.difference(area, shapely.union_all(lower))
-        wide = [p for p in shapely.get_parts(seen) if not p.buffer(-0.01).is_empty]
+        seen = overlays.subtract_areas(area, overlays.unite_areas(lower))
+        wide = [p for p in shapely.get_parts(seen) if not overlays.buffer_shapes(p, -0.01).is_empty]
         heights_m += [plane.heights(shapely.get_coordinates(part)) for part in wide]
     if not heights_m:
         return main_m, main_m

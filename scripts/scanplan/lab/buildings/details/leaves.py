@@ -7,6 +7,7 @@ import shapely
 from shapely import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings.details.things import DrawnLeaf, DrawnOpening
 from scanplan.types import FloatArray
 
@@ -54,9 +55,9 @@ def frame_bands(opening: DrawnOpening) -> list[tuple[float, float, BaseGeometry]
     if opening.frame_m == 0.0:
         return []
     half_m = opening.thickness_m / 2
-    whole = opening.line_m.buffer(half_m, cap_style="flat")
-    clear = opening.clear_line_m.buffer(half_m, cap_style="flat")
-    jambs = shapely.difference(whole, clear)
+    whole = overlays.buffer_shapes(opening.line_m, half_m, cap_style="flat")
+    clear = overlays.buffer_shapes(opening.clear_line_m, half_m, cap_style="flat")
+    jambs = overlays.subtract_areas(whole, clear)
     return [
         (opening.sill_m, opening.clear_lintel_m, jambs),
         (opening.clear_lintel_m, opening.lintel_m, whole),

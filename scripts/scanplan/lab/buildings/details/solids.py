@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.buildings.details import leaves, triangles
 from scanplan.lab.buildings.details.things import (
     DrawnCeiling,
@@ -54,12 +55,12 @@ def floor_soups(
     voids = list(voids)
     solid = footprint_m
     if voids:
-        solid = shapely.difference(solid, shapely.union_all([v.footprint_m for v in voids]))
-    polished = shapely.union_all(list(polished_m))
+        solid = overlays.subtract_areas(solid, overlays.unite_areas([v.footprint_m for v in voids]))
+    polished = overlays.unite_areas(list(polished_m))
     soups = []
     if not polished.is_empty:
-        shining = shapely.intersection(solid, polished)
-        solid = shapely.difference(solid, polished)
+        shining = overlays.intersect_areas(solid, polished)
+        solid = overlays.subtract_areas(solid, polished)
         soups.append(("polished", triangles.triangulate(shining, 0.0, up=True)))
     soups.insert(0, ("floor", triangles.triangulate(solid, 0.0, up=True)))
     for void in voids:
@@ -96,7 +97,7 @@ def mirror_soup(mirror: DrawnMirror) -> Soup:
 
 def ground_soup(ground: DrawnGround, footprint_m: BaseGeometry) -> Soup:
     """Return ground outside a building."""
-    outside = shapely.difference(ground.footprint_m, footprint_m)
+    outside = overlays.subtract_areas(ground.footprint_m, footprint_m)
     return "other", triangles.triangulate(outside, ground.z_m, up=True)
 
 

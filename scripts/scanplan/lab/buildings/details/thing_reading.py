@@ -7,6 +7,7 @@ import shapely
 from shapely import LineString, Point
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.lab.buildings.details.feature_reading import DrawnPart
 from scanplan.lab.buildings.details.things import (
     DrawnCeiling,
@@ -129,8 +130,8 @@ def read_stairs(part: DrawnPart, voids: Sequence[DrawnVoid]) -> DrawnStairs:
             f"{part.where}: steps is {steps:g}, rise_m {rise_m:g}; expected a whole number and a"
             " rise other than 0"
         )
-    hole = shapely.union_all([void.footprint_m for void in voids])
-    beside_m2 = part.geometry_m.difference(hole).area
+    hole = overlays.unite_areas([void.footprint_m for void in voids])
+    beside_m2 = overlays.subtract_areas(part.geometry_m, hole).area
     if rise_m < 0 and beside_m2 > 0.01 * part.geometry_m.area:
         raise StageError(
             f"{part.where}: lead down by {-rise_m:g} m, {beside_m2:.2f} m2 of them beside any void;"

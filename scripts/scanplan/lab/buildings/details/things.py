@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from shapely import LineString, Polygon
 
+from scanplan.geometry import overlays
 from scanplan.types import FloatArray
 
 
@@ -117,7 +118,7 @@ class DrawnOpening:
     @property
     def pane_m(self) -> Polygon:
         """The ground below its pane, as thick as double glazing."""
-        return Polygon(self.line_m.buffer(0.01, cap_style="flat"))
+        return Polygon(overlays.buffer_shapes(self.line_m, 0.01, cap_style="flat"))
 
     @property
     def clear_line_m(self) -> LineString:
@@ -220,7 +221,7 @@ class DrawnMirror:
     @property
     def slab_m(self) -> Polygon:
         """The ground below it; half its thickness is before the line."""
-        return Polygon(self.line_m.buffer(self.thickness_m / 2, cap_style="flat"))
+        return Polygon(overlays.buffer_shapes(self.line_m, self.thickness_m / 2, cap_style="flat"))
 
 
 @dataclass(frozen=True)
@@ -243,4 +244,4 @@ class DrawnFacade:
     @property
     def slab_m(self) -> Polygon:
         """The ground that it stands on."""
-        return Polygon(self.line_m.buffer(self.thickness_m / 2, cap_style="flat"))
+        return Polygon(overlays.buffer_shapes(self.line_m, self.thickness_m / 2, cap_style="flat"))

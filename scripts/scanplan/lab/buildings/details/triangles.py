@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SAME_M
 from scanplan.lab.buildings.details.things import Plane
 from scanplan.types import FloatArray
@@ -34,8 +35,8 @@ def extrude_bands(bands: Sequence[Band]) -> FloatArray:
     below = [Polygon(), *sections]
     above = [*sections, Polygon()]
     for z_m, under, over in zip(levels_m, below, above, strict=True):
-        tops = shapely.difference(under, over, grid_size=SAME_M)
-        undersides = shapely.difference(over, under, grid_size=SAME_M)
+        tops = overlays.subtract_areas(under, over, grid=SAME_M)
+        undersides = overlays.subtract_areas(over, under, grid=SAME_M)
         surfaces.append(triangulate(tops, z_m, up=True))
         surfaces.append(triangulate(undersides, z_m, up=False))
     return np.concatenate(surfaces)

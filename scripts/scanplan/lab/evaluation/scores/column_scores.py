@@ -4,7 +4,7 @@ import numpy as np
 import shapely
 from scipy.optimize import linear_sum_assignment
 
-from scanplan.geometry import polygons
+from scanplan.geometry import overlays, polygons
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.score import (
@@ -41,7 +41,7 @@ def score_columns(plan: DrawnPlan, scene: Scene, sight: Sight) -> Score:
     kept = alike[drawn, true]
     true_of = np.full(len(plan.columns), -1)
     true_of[drawn[kept]] = true[kept]
-    entered = shapely.union_all(scene.entered_rooms)
+    entered = overlays.unite_areas(scene.entered_rooms)
     is_inside = np.array([shapely.dwithin(c, entered, _BESIDE_M) for c in scene.columns], bool)
     wanted = is_inside & sight.column
     found = np.isin(np.arange(len(wanted)), true_of)
@@ -72,7 +72,7 @@ def score_columns(plan: DrawnPlan, scene: Scene, sight: Sight) -> Score:
 def _are_alike(plan: DrawnPlan, scene: Scene) -> BoolArray:
     """Return which drawn columns may be which true ones: (d, c)."""
     drawn, true = plan.columns[:, None], scene.columns[None]
-    shared_m2 = shapely.area(shapely.intersection(drawn, true))
+    shared_m2 = shapely.area(overlays.intersect_areas(drawn, true))
     iou = shared_m2 / (shapely.area(drawn) + shapely.area(true) - shared_m2)
     apart_m = shapely.distance(shapely.centroid(drawn), shapely.centroid(true))
     off_m = np.abs(_sizes(plan.columns)[:, None] - _sizes(scene.columns)[None]).max(axis=-1)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import length_metrics, plan_metrics
 from scanplan.lab.evaluation.scores.scene import no_lines
 from scanplan.lab.evaluation.scores.score import Rating, read_ratings, transform_lines
@@ -159,8 +160,10 @@ def move_shapes(wkb: Array, motion: FloatArray) -> Array:
     def move(xy_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         return np.asarray(transform_lines(xy_m, motion), np.float64)
 
-    moved = shapely.transform(shapes, move)
-    return np.asarray(shapely.make_valid(moved), object).reshape(-1)
+    moved = np.asarray(shapely.transform(shapes, move), object).reshape(-1)
+    is_area = shapely.get_dimensions(moved) == 2
+    moved[is_area] = overlays.repair_areas(moved[is_area])
+    return moved
 
 
 def _column(columns: Columns, name: str, n_rows: int, default: object) -> Array:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import wall_findings
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.opening_metrics import unit_directions
@@ -88,7 +89,7 @@ def judge_lines(cells: FaceCells, kind: IntArray, right_share: float) -> tuple[A
 def _is_leaf(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
     leaves = scene.leaves
     stands = ~leaves.shut
-    bodies = shapely.buffer(
+    bodies = overlays.buffer_shapes(
         line_shapes_of(leaves.lines_m[stands]), leaves.thickness_m[stands] / 2 + WITHIN_M
     )
     return _is_in(points, bodies)
@@ -117,7 +118,7 @@ def _is_across(scene: Scene, points: Array, way: FloatArray, chosen: BoolArray) 
 
 def _is_furniture(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
     shapes = [*scene.furniture, *line_shapes_of(scene.screens_m)]
-    return _is_in(points, shapely.buffer(np.array(shapes, object), WITHIN_M))
+    return _is_in(points, overlays.buffer_shapes(np.array(shapes, object), WITHIN_M))
 
 
 def _is_off(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:

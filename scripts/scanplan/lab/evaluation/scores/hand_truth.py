@@ -10,6 +10,7 @@ import shapely
 from scipy.optimize import OptimizeResult, minimize
 from scipy.spatial import KDTree
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
 from scanplan.lab.evaluation.scores.scene import (
     DOORS,
@@ -43,8 +44,11 @@ def read_hand_scene(path: FilePath) -> Scene:
     """
     parts = read_parts(path)
     drawn_openings = parts.get("opening", [])
-    gaps = shapely.union_all([g for k in ("opening", "unseen") for _, g in parts.get(k, [])])
-    surfaces = [g.difference(gaps.buffer(_GAP_M)) for _, g in parts.get("surface", [])]
+    gaps = overlays.unite_shapes([g for k in ("opening", "unseen") for _, g in parts.get(k, [])])
+    surfaces = [
+        overlays.subtract_lines(g, overlays.buffer_shapes(gaps, _GAP_M))
+        for _, g in parts.get("surface", [])
+    ]
     runs_m = [outline_sides_m(part) for g in surfaces for part in shapely.get_parts(g)]
     faces_m = np.concatenate([no_lines(), *runs_m])
     n_openings = len(drawn_openings)
@@ -68,7 +72,7 @@ def read_hand_scene(path: FilePath) -> Scene:
         names=np.array([str(v.get("name", "")) for v, _ in rooms], object),
         entered=np.array([bool(v.get("entered", True)) for v, _ in rooms], bool),
         ceiling_m=np.full((len(rooms), 2), np.nan),
-        ignored=shapely.union_all([g for _, g in parts.get("ignore", [])]),
+        ignored=overlays.unite_areas([g for _, g in parts.get("ignore", [])]),
         opening_m=_DOOR_M,
         is_whole=False,
     )

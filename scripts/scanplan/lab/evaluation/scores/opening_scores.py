@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation.opening_metrics import PARALLEL, WALL_M, unit_directions
 from scanplan.lab.evaluation.scores.drawn_plan import GAP, NOT_DRAWN, DrawnPlan
@@ -142,16 +143,16 @@ def _judge(plan: DrawnPlan, scene: Scene, pairs: Pairs, same: BoolArray) -> Arra
     Unknown are gaps; and, of a truth that is a part, what lies at none of its rooms, or all where
     it has no openings.
     """
-    free = shapely.union_all(scene.rooms)
+    free = overlays.unite_areas(scene.rooms)
     lines = line_shapes_of(plan.openings_m)
-    is_free = shapely.length(shapely.intersection(lines, free)) >= _FREE_SHARE * shapely.length(
+    is_free = shapely.length(overlays.intersect_lines(lines, free)) >= _FREE_SHARE * shapely.length(
         lines
     )
     verdicts = np.full(len(plan.type), "other", object)
     verdicts[pairs.true_of >= 0] = "wrong_type"
     verdicts[same | ((plan.type == "passage") & is_free)] = RIGHT
     if not scene.is_whole:
-        apart_m = shapely.distance(lines, shapely.union_all(scene.entered_rooms))
+        apart_m = shapely.distance(lines, overlays.unite_areas(scene.entered_rooms))
         is_elsewhere = ~(np.nan_to_num(apart_m, nan=np.inf) <= _ASKED_M)
         is_elsewhere |= not len(scene.openings.type)
         verdicts[is_elsewhere & (verdicts == "other")] = "unknown"

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.scene_file import object_array
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
@@ -42,7 +43,7 @@ def draw_cells(chosen: BoolArray, cell_m: float) -> BaseGeometry:
     """Return the ground of chosen cells (h, w), row 0 at y = 0, as one (Multi)Polygon."""
     rows, begins, ends = _runs(chosen)
     boxes = shapely.box(begins * cell_m, rows * cell_m, ends * cell_m, (rows + 1) * cell_m)
-    return shapely.union_all(boxes, grid_size=_GRID_M)
+    return overlays.unite_areas(boxes, grid=_GRID_M)
 
 
 def _runs(chosen: BoolArray) -> tuple[IntArray, IntArray, IntArray]:

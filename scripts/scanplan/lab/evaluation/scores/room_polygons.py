@@ -37,6 +37,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.scores.score import precision_recall
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
@@ -99,12 +100,14 @@ def corner_ring_m(room: BaseGeometry) -> FloatArray:
     if not len(parts):
         return np.empty((0, 2))
     largest = parts[shapely.area(parts).argmax()]
-    outline = shapely.simplify(shapely.orient_polygons(shapely.Polygon(largest.exterior)), 0.0)
+    outline = overlays.simplify_shapes(
+        shapely.orient_polygons(shapely.Polygon(largest.exterior)), 0.0
+    )
     ring_m = shapely.get_coordinates(outline.exterior)[:-1]
     # begun at the corner farthest from the middle: simplifying keeps the ring's first point
     start = int(np.hypot(*(ring_m - ring_m.mean(axis=0)).T).argmax())
     begun = shapely.Polygon(np.roll(ring_m, -start, axis=0))
-    return shapely.get_coordinates(shapely.simplify(begun, _STRAIGHT_M))[:-1]
+    return shapely.get_coordinates(overlays.simplify_shapes(begun, _STRAIGHT_M))[:-1]
 
 
 def _fit_square(low_m: FloatArray, high_m: FloatArray) -> Raster:
@@ -193,12 +196,12 @@ def _inner_angles_deg(ring: FloatArray) -> FloatArray:
 
 def _find_overlapping(rings: list[FloatArray]) -> BoolArray:
     """Return which rooms (n,) overlap another one, all eroded by two pixels."""
-    eroded = shapely.buffer(_polygons(rings), -_ERODED_PX, join_style="mitre")
+    eroded = overlays.buffer_shapes(_polygons(rings), -_ERODED_PX, join_style="mitre")
     overlaps = np.zeros(len(rings), bool)
     one, other = shapely.STRtree(eroded).query(eroded, predicate="intersects")
     is_pair = one < other
     one, other = one[is_pair], other[is_pair]
-    is_large = shapely.area(shapely.intersection(eroded[one], eroded[other])) >= _OVERLAP_PX
+    is_large = shapely.area(overlays.intersect_areas(eroded[one], eroded[other])) >= _OVERLAP_PX
     overlaps[one[is_large]] = True
     overlaps[other[is_large]] = True
     return overlaps
@@ -206,11 +209,11 @@ def _find_overlapping(rings: list[FloatArray]) -> BoolArray:
 
 def _polygons(rings: list[FloatArray]) -> Array:
     shapes = np.empty(len(rings), object)
-    shapes[:] = [shapely.make_valid(shapely.Polygon(ring)) for ring in rings]
+    shapes[:] = [overlays.repair_areas(shapely.Polygon(ring)) for ring in rings]
     return shapes
 
 
 def _iou(true: Array, drawn: Array) -> FloatArray:
-    shared = shapely.area(shapely.intersection(true[:, None], drawn[None]))
+    shared = shapely.area(overlays.intersect_areas(true[:, None], drawn[None]))
     whole = shapely.area(true)[:, None] + shapely.area(drawn)[None] - shared
     return np.divide(shared, whole, out=np.zeros(shared.shape), where=whole > 0)

@@ -13,6 +13,7 @@ import numpy as np
 import shapely
 from scipy.optimize import linear_sum_assignment
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.scores.room_polygons import measure_room_polygons
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.score import (
@@ -117,7 +118,7 @@ def score_rooms(
 
 
 def _overlap(rooms: Array, true: Array) -> _Overlap:
-    shared_m2 = shapely.area(shapely.intersection(true[:, None], rooms[None]))
+    shared_m2 = shapely.area(overlays.intersect_areas(true[:, None], rooms[None]))
     return _Overlap(shared_m2, shapely.area(true), shapely.area(rooms))
 
 
@@ -157,7 +158,7 @@ def _judge(overlap: _Overlap, scene: Scene, rooms: Array) -> Array:
     iou, shared_m2 = overlap.iou, overlap.shared_m2
     covered = shared_m2 / np.maximum(overlap.true_m2, 1e-9)[:, None]
     inside = shared_m2 / np.maximum(overlap.drawn_m2, 1e-9)[None]
-    ignored = shapely.area(shapely.intersection(scene.ignored, rooms)) / np.maximum(
+    ignored = shapely.area(overlays.intersect_areas(scene.ignored, rooms)) / np.maximum(
         overlap.drawn_m2, 1e-9
     )
     is_right = iou.max(axis=0, initial=0.0) > RIGHT_IOU

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.opening_metrics import WALL_M, unit_directions
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
@@ -79,7 +80,7 @@ class TrueOpenings:
     def footprints(self, margin_m: float) -> Array:
         """Return the ground (n,) of the openings in their walls, deeper by a margin each side."""
         half_m = np.nan_to_num(self.thickness_m) / 2 + margin_m
-        return shapely.buffer(line_shapes_of(self.lines_m), half_m, cap_style="flat")
+        return overlays.buffer_shapes(line_shapes_of(self.lines_m), half_m, cap_style="flat")
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,9 +196,9 @@ class Scene:
     def ground(self) -> BaseGeometry:
         """The ground of the building: rooms, walls, and what stands or opens in them."""
         half_m = self.thickness_m.max(axis=1, initial=0.0) / 2
-        bodies = shapely.buffer(line_shapes_of(self.walls_m), half_m, cap_style="square")
+        bodies = overlays.buffer_shapes(line_shapes_of(self.walls_m), half_m, cap_style="square")
         parts = [*self.rooms, *bodies, *self.columns, *self.voids]
-        return shapely.union_all(parts).buffer(_OUTSIDE_M)
+        return overlays.buffer_shapes(overlays.unite_areas(parts), _OUTSIDE_M)
 
     @cached_property
     def entered_rooms(self) -> Array:

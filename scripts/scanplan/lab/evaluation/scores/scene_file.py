@@ -9,6 +9,7 @@ from shapely.geometry import shape
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import true_plan, truth_file
 from scanplan.lab.evaluation.scores.scene import (
     BESIDE_M,
@@ -100,7 +101,7 @@ def read_parts(path: FilePath) -> dict[str, list[tuple[dict[str, Any], BaseGeome
                 f"{path}: feature {number} has no geometry that can be read; {_REMEDY}"
             ) from None
         if geometry.area > 0:
-            geometry = shapely.make_valid(geometry)
+            geometry = overlays.repair_areas(geometry)
         parts.setdefault(str(values.get("kind")), []).append((values, geometry))
     return parts
 

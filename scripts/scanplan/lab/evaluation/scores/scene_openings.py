@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation.scores.scene import (
     BESIDE_M,
     TrueLeaves,
@@ -90,7 +91,7 @@ def read_openings(
     lines_m = lines_m.reshape(-1, 2, 2)
     host_m = _host_thickness_m(lines_m, walls_m, thickness_m)
     lines = line_shapes_of(lines_m)
-    apart_m = shapely.distance(lines, shapely.union_all(entered))
+    apart_m = shapely.distance(lines, overlays.unite_areas(entered))
     way = shapely.LineString(track_m) if len(track_m) > 1 else shapely.Point()
     is_door = np.array([v.get("type") != "window" for v in values], bool)
     return TrueOpenings(
@@ -136,5 +137,5 @@ def _find_shut(lines_m: FloatArray, thickness_m: FloatArray, closing_m: FloatArr
         spans = shapely.linestrings(
             np.stack([along_m, np.zeros_like(along_m)], axis=-1).reshape(-1, 2, 2)
         )
-        shut[row] = shapely.union_all(spans).length >= _SHUT_SHARE * width_m
+        shut[row] = overlays.unite_lines(spans).length >= _SHUT_SHARE * width_m
     return shut

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from scipy import ndimage
 from scipy.spatial import KDTree
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import face_cells, visible_faces
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.opening_metrics import unit_directions
@@ -107,7 +107,7 @@ def _pieces(scene: Scene) -> tuple[FloatArray, IntArray]:
     sides: list[FloatArray] = [middles_m + across * half_m, middles_m - across * half_m]
     owners = [np.arange(n_leaves), np.arange(n_leaves)]
     for row, shape in enumerate(scene.columns):
-        grown_m = outline_sides_m(shapely.buffer(shape, _PROUD_M, join_style="mitre"))
+        grown_m = outline_sides_m(overlays.buffer_shapes(shape, _PROUD_M, join_style="mitre"))
         sides.append(grown_m)
         owners.append(np.full(len(grown_m), n_leaves + row))
     lines_m, owner = np.concatenate(sides), np.concatenate(owners)

@@ -7,6 +7,7 @@ stretch says whether the plan is right there.
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation.opening_metrics import PARALLEL, unit_directions
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
@@ -54,7 +55,7 @@ def score_thickness(plan: DrawnPlan, scene: Scene) -> Score:
         rows.append(
             Element(
                 "thickness",
-                shapely.union_all(runs),
+                overlays.unite_lines(runs),
                 "off",
                 number=int(plan.wall[number]),
                 **rating.rate(int(plan.wall[number])),

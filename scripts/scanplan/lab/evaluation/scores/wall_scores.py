@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
+from scanplan.geometry import overlays
 from scanplan.lab.evaluation import face_cells, length_metrics, wall_findings
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.scores import false_walls
@@ -146,7 +147,7 @@ def _missed(lines_m: FloatArray, plan: DrawnPlan, sight: Sight) -> list[Element]
     wanted = sight.visible if sight.hit is None else sight.hit
     lacking = wanted & ~_found(cells, _some_length(lines_m), false_walls.WITHIN_M)
     rows = []
-    asked = shapely.union_all(plan.questions)
+    asked = overlays.unite_shapes(plan.questions)
     for line_m, face in _runs(cells, lacking):
         shape = shapely.LineString(line_m)
         if shape.length >= _MISSED_M:

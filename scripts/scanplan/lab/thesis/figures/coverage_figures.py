@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry import overlays
 from scanplan.lab.thesis.claim_measures import FOUR, count_clusters, curve_of, scans_for_99
 from scanplan.lab.thesis.stated_claims import Sizes
 from scanplan.report import top_view
@@ -59,7 +60,7 @@ def draw_hulls_figure(
             PatchCollection(patches, facecolor=colour, edgecolor=colour, alpha=0.35, lw=0.8)
         )
         axes.plot(*place_m, "o", ms=4, mfc="white", mec="black", zorder=3)
-        axes.set_title(f"{title}: {shapely.union_all(shapes).area:.0f} m²", fontsize=9)
+        axes.set_title(f"{title}: {overlays.unite_areas(shapes).area:.0f} m²", fontsize=9)
         axes.set_aspect("equal")
         top_view.name_axes(axes, "x (m)", "y (m)" if axes is frames[0] else "")
     figure.dpi = 200
