@@ -325,7 +325,7 @@ def _part_enough(
         parts = shapely.get_parts(overlays.subtract_areas(ground, overlays.unite_areas(cuts)))
         is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
         is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
-        is_wide = ~shapely.is_empty(overlays.buffer_shapes(parts, -sliver_m))
+        is_wide = ~shapely.is_empty(overlays.buffer_shapes(parts, -sliver_m, quad_segs=8))
         beside = [_parts_beside(line, parts) for line in chosen]
         cut_off = [
             i

@@ -95,7 +95,9 @@ def cross_lines(lines: Shapes, others: Shapes) -> Answer:
     return _overlay(shapely.intersection, _intersect, 0, lines, others, None)
 
 
-def buffer_shapes(shapes: Shapes, by: float | Array, **style: Any) -> Answer:
+def buffer_shapes(
+    shapes: Shapes, by: float | Array, *, quad_segs: int = 16, **style: Any
+) -> Answer:
     """Return the areas within a distance of shapes, or of areas what is as far from their edges.
 
     Parameters
@@ -103,12 +105,14 @@ def buffer_shapes(shapes: Shapes, by: float | Array, **style: Any) -> Answer:
     shapes : geometry or array
     by : float or (n,) float
         In the units of the coordinates; negative for what is left within areas.
+    quad_segs : int
+        Straight pieces that a quarter of a round corner is made of.
     **style
-        `cap_style`, `join_style` and `quad_segs`, as for `shapely.buffer`.
+        `cap_style` and `join_style`, as for `shapely.buffer`.
     """
 
     def buffer(*geometry: Any) -> Answer:
-        return shapely.buffer(*geometry, **style)
+        return shapely.buffer(*geometry, quad_segs=quad_segs, **style)
 
     return _unary(buffer, _AREA, shapes, by)
 

@@ -210,7 +210,7 @@ class FloorPlan:
         lines = line_shapes(np.concatenate([wall_lines_m, face_lines_m]))
         # they end at the surfaces of the walls that they meet
         hidden = overlays.unite_areas(
-            [*self.gaps, *overlays.buffer_shapes(self.known_bodies, _GRID_M)]
+            [*self.gaps, *overlays.buffer_shapes(self.known_bodies, _GRID_M, quad_segs=8)]
         )
         parts = shapely.get_parts(overlays.subtract_lines(lines, hidden))
         return parts[shapely.length(parts) > 0]

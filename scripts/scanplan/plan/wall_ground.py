@@ -105,7 +105,9 @@ def find_bare_spans(
         Shorter spans are of corners.
     """
     strips = wall_strips(walls, unpaired_m)
-    walled = overlays.unite_areas(overlays.buffer_shapes(np.array(strips, object), END_M))
+    walled = overlays.unite_areas(
+        overlays.buffer_shapes(np.array(strips, object), END_M, quad_segs=8)
+    )
     found: list[BareSpan] = []
     for number, room in enumerate(rooms):
         bare = overlays.subtract_lines(shapely.boundary(room), walled)

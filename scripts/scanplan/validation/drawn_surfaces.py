@@ -92,7 +92,9 @@ def list_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> DrawnSurfa
     surfaces += _opening_surfaces(plan, planar=planar)
     surfaces += _wall_ends(plan)
     lines_m = np.array([surface.ends_m for surface in surfaces], float).reshape(-1, 2, 2)
-    drawn = overlays.unite_areas(overlays.buffer_shapes([*line_shapes(lines_m), *plan.gaps], END_M))
+    drawn = overlays.unite_areas(
+        overlays.buffer_shapes([*line_shapes(lines_m), *plan.gaps], END_M, quad_segs=8)
+    )
     return _gather([*surfaces, *_outline_ways(plan, drawn, span_m)])
 
 

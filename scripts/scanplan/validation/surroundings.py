@@ -110,7 +110,7 @@ def share_along(lines_m: FloatArray, areas: Array) -> FloatArray:
         Shapely polygons.
     """
     outlines = shapely.boundary(areas)
-    near = overlays.unite_areas(overlays.buffer_shapes(outlines, BEHIND_M))
+    near = overlays.unite_areas(overlays.buffer_shapes(outlines, BEHIND_M, quad_segs=8))
     lines = line_shapes(lines_m)
     return shapely.length(overlays.intersect_lines(lines, near)) / np.maximum(
         shapely.length(lines), SHORTEST_M
@@ -126,7 +126,7 @@ def share_faced(areas: Array, lines_m: FloatArray) -> FloatArray:
         Shapely polygons.
     lines_m : (m, 2, 2) float64
     """
-    near = overlays.buffer_shapes(overlays.unite_lines(line_shapes(lines_m)), BEHIND_M)
+    near = overlays.buffer_shapes(overlays.unite_lines(line_shapes(lines_m)), BEHIND_M, quad_segs=8)
     outlines = shapely.boundary(areas)
     return shapely.length(overlays.intersect_lines(outlines, near)) / np.maximum(
         shapely.length(outlines), SHORTEST_M

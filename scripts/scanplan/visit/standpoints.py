@@ -30,7 +30,9 @@ def find_ground(plan: FloorPlan, track_m: FloatArray, clearance_m: float) -> Roa
         overlays.unite_areas(plan.bodies), overlays.unite_areas(plan.gaps[is_way])
     )
     free = overlays.buffer_shapes(overlays.subtract_areas(floor, walls), -clearance_m)
-    driven = overlays.unite_areas(overlays.buffer_shapes(shapely.points(track_m), clearance_m))
+    driven = overlays.unite_areas(
+        overlays.buffer_shapes(shapely.points(track_m), clearance_m, quad_segs=8)
+    )
     grid = roadmap.make_grid(overlays.unite_each(free, driven), clearance_m, cell_m)
     return roadmap.connected_grid(grid, track_m[0]) if len(grid.xy_m) else grid
 

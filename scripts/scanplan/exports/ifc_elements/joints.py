@@ -86,7 +86,7 @@ class _Side:
 
 def _wall_sides(storey: StoreyPlan, walls: Sequence[entity_instance]) -> Iterator[_Side]:
     plan = storey.plan
-    reaches = overlays.buffer_shapes(plan.bodies, NEAR_M)
+    reaches = overlays.buffer_shapes(plan.bodies, NEAR_M, quad_segs=8)
     for row, line_m in enumerate(floorplan.centrelines_m(plan.walls)):
         extent_m = (0.0, float(plan.heights_m[row]))
         is_external = bool(storey.external[row])

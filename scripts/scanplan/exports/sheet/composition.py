@@ -312,7 +312,7 @@ def surround_symbol(page: Page, symbol: Symbol) -> FloatArray:
     """Return a line (n, 2) around a doubtful or corrected opening, map frame."""
     half_m = symbol.thickness_m / 2 + _apart_m(page)
     return shapely.get_coordinates(
-        overlays.buffer_shapes(shapely.LineString(symbol.ends_m), half_m)
+        overlays.buffer_shapes(shapely.LineString(symbol.ends_m), half_m, quad_segs=8)
     )
 
 

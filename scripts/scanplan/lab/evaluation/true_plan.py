@@ -108,7 +108,7 @@ def join_touching(rooms: Sequence[BaseGeometry]) -> list[tuple[BaseGeometry, lis
     list of (geometry, list of int)
         Each space, and the rows of the rooms that it is made of.
     """
-    grown = [overlays.buffer_shapes(room, _TOUCH_M) for room in rooms]
+    grown = [overlays.buffer_shapes(room, _TOUCH_M, quad_segs=8) for room in rooms]
     joined = []
     for rows in _touching_groups(grown):
         if len(rows) == 1:

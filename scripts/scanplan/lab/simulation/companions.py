@@ -36,8 +36,8 @@ def place_standing(
         Empty where there is no room.
     """
     way = LineString(drive.xy_m)
-    room = overlays.buffer_shapes(free, -people.CLEARANCE_M)
-    room = overlays.subtract_areas(room, overlays.buffer_shapes(way, _FROM_WAY_M))
+    room = overlays.buffer_shapes(free, -people.CLEARANCE_M, quad_segs=8)
+    room = overlays.subtract_areas(room, overlays.buffer_shapes(way, _FROM_WAY_M, quad_segs=8))
     if room.is_empty:
         return ()
     shapely.prepare(room)
@@ -91,7 +91,9 @@ def _heading(drive: rover.Drive) -> FloatArray:
 def _room_behind_m(free: BaseGeometry, drive: rover.Drive, lag_m: float) -> float:
     """Return how far behind the start, at most the lag, one can stand with floor all the way."""
     back = LineString([drive.xy_m[0], drive.xy_m[0] - lag_m * _heading(drive)])
-    walked = overlays.intersect_lines(back, overlays.buffer_shapes(free, -people.CLEARANCE_M))
+    walked = overlays.intersect_lines(
+        back, overlays.buffer_shapes(free, -people.CLEARANCE_M, quad_segs=8)
+    )
     parts = [part for part in shapely.get_parts(walked) if part.length > 0]
     start = shapely.Point(drive.xy_m[0])
     return max((part.length for part in parts if part.distance(start) < SAME_M), default=0.0)

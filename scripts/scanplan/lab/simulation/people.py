@@ -57,7 +57,7 @@ def simulate_walkers(
     tuple of Person
         Empty where there is no room to walk.
     """
-    room = overlays.buffer_shapes(free, -CLEARANCE_M)
+    room = overlays.buffer_shapes(free, -CLEARANCE_M, quad_segs=8)
     if room.is_empty:
         return ()
     shapely.prepare(room)

@@ -119,7 +119,7 @@ def seen_polygons(faces: TrueFaces, places_m: FloatArray, *, max_range_m: float)
     # neighbouring corners that coincide make an outline touch itself; a line has no area
     touching = np.array([shapely.Polygon(outline) for outline in outlines])
     seen = overlays.repair_areas(touching, method="structure", keep_collapsed=False)
-    discs = overlays.buffer_shapes(shapely.points(places_m), max_range_m)
+    discs = overlays.buffer_shapes(shapely.points(places_m), max_range_m, quad_segs=8)
     return np.asarray(overlays.intersect_areas(seen, discs))
 
 

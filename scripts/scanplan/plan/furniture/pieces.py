@@ -92,7 +92,9 @@ def find_pieces(
     list of Piece
         The largest first.
     """
-    solid = overlays.unite_areas(overlays.buffer_shapes(np.array(walls, object), FACE_M))
+    solid = overlays.unite_areas(
+        overlays.buffer_shapes(np.array(walls, object), FACE_M, quad_segs=8)
+    )
     near = overlays.buffer_shapes(overlays.unite_areas(list(rooms)), CORNER_M)
     ground = overlays.subtract_areas(near, solid)
     if ground.is_empty:

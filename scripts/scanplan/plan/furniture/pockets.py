@@ -71,7 +71,7 @@ def find_pockets(
     search = _Search(
         faces=PlanFaces(list_faces(walls)),
         parts=parts,
-        grown=overlays.buffer_shapes(parts, CELL_M),
+        grown=overlays.buffer_shapes(parts, CELL_M, quad_segs=8),
         single={id(face) for face in alone},
         opened=set(map(id, list_faces([wall for wall in walls if wall.openings]))),
         continued={id(face) for wall in walls for face in _find_continued(wall)},

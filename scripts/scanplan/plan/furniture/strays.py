@@ -67,7 +67,7 @@ def _choose_few(short: Sequence[PlanWall], apart_m: float) -> list[PlanWall]:
     """
     ends_m = np.array([wall.ends for wall in short]).reshape(-1, 2, 2)
     lines = np.asarray(shapely.linestrings(ends_m), object)
-    grown = overlays.buffer_shapes(lines, apart_m / 2)
+    grown = overlays.buffer_shapes(lines, apart_m / 2, quad_segs=8)
     group = shapely.get_parts(overlays.unite_areas(grown))
     inside = shapely.intersects(lines[:, None], group[None])
     is_few = inside.sum(axis=0) < FEW

@@ -90,7 +90,9 @@ def _is_leaf(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray)
     leaves = scene.leaves
     stands = ~leaves.shut
     bodies = overlays.buffer_shapes(
-        line_shapes_of(leaves.lines_m[stands]), leaves.thickness_m[stands] / 2 + WITHIN_M
+        line_shapes_of(leaves.lines_m[stands]),
+        leaves.thickness_m[stands] / 2 + WITHIN_M,
+        quad_segs=8,
     )
     return _is_in(points, bodies)
 
@@ -118,7 +120,7 @@ def _is_across(scene: Scene, points: Array, way: FloatArray, chosen: BoolArray) 
 
 def _is_furniture(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
     shapes = [*scene.furniture, *line_shapes_of(scene.screens_m)]
-    return _is_in(points, overlays.buffer_shapes(np.array(shapes, object), WITHIN_M))
+    return _is_in(points, overlays.buffer_shapes(np.array(shapes, object), WITHIN_M, quad_segs=8))
 
 
 def _is_off(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
