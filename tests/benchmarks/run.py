@@ -12,6 +12,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
+       run.py overlays [COUNT [FIRST SEED]]
        run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR | KEY=VALUE ...]
        run.py compare_realistic SCORES SCORES
 
@@ -58,8 +59,12 @@ made with this code, and kept in FOLDER.
 `odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
 scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
 drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
+
+`overlays` unites, cuts and parts 100,000 arrangements of areas that rounding makes hard, or as many
+as are said, and fails where an overlay raises or areas do not add up.
 """
 
+import os
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
@@ -210,6 +215,13 @@ def bench_odometry(folder: str, *names: str) -> None:
     sys.exit(not odometry_bench.bench(ROOT, SETTINGS, kept, recordings, drives))
 
 
+def bench_overlays(count: str = "100000", first: str = "0") -> None:
+    """Arrangements of slivers, arcs and near-coincident edges, by seeds."""
+    import overlays_bench
+
+    overlays_bench.bench(int(count), int(first), os.cpu_count() or 1)
+
+
 def bench_realistic(folder: str, revision: str = "HEAD", *words: str) -> None:
     """Plans of realistic buildings and real floors against what is true of them."""
     import realistic
@@ -235,6 +247,7 @@ APART: dict[str, Callable[..., None]] = {
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,
+    "overlays": bench_overlays,
     "pipeline": bench_pipeline,
     "sheets": bench_sheets,
     "ids": bench_ids,

@@ -204,11 +204,12 @@ def find_overlays(path: Path, source: str) -> list[str]:
 
 
 def test_only_overlays_asks_for_overlays():
-    home = PACKAGE / "geometry/overlays.py"
-    files = [path for path in sorted(SCRIPTS.rglob("*.py")) if path != home]
-    assert find_overlays(home, home.read_text(encoding="utf-8"))
-    found = [place for path in files for place in find_overlays(path, path.read_text("utf-8"))]
-    assert found == []
+    homes = {PACKAGE / "geometry/overlays.py", PACKAGE / "geometry/overlay_steps.py"}
+    found = {
+        path: find_overlays(path, path.read_text("utf-8")) for path in sorted(SCRIPTS.rglob("*.py"))
+    }
+    assert all(found.pop(home) for home in homes)
+    assert [place for places in found.values() for place in places] == []
 
 
 @pytest.mark.parametrize(

@@ -96,3 +96,11 @@ def test_a_watched_stage_leaves_the_screen_to_its_run(tmp_path):
     result, said = run(tmp_path, body, SCANPLAN_WATCHED="1")
     assert result.stdout == result.stderr == ""
     assert "INFO a line" in said and "WARNING doubt" in said and "ERROR stage: a.bag: cut" in said
+
+
+@pytest.mark.parametrize(("count", "told"), [(3, True), (0, False)])
+def test_overlays_done_another_way_are_told_in_the_log_alone(tmp_path, count, told):
+    body = f"from scanplan.geometry import fallbacks; fallbacks.note_fallbacks({count})"
+    result, log = run(tmp_path, body)
+    assert result.stderr == ""
+    assert bool(re.search(rf"overlays .*: {count}$", log, re.M)) == told

@@ -5,6 +5,7 @@ import sys
 import pytest
 
 from scanplan.errors import StageError
+from scanplan.geometry import fallbacks
 from scanplan.stage import workers
 
 _known = None
@@ -115,3 +116,16 @@ def test_what_work_begun_in_a_thread_raises_is_raised_where_it_is_waited_for(thr
     wait = workers.begin_in_thread(lambda number: 1 / number, 0, threads=threads)
     with pytest.raises(ZeroDivisionError):
         wait()
+
+
+def fall_back(count):
+    fallbacks.note_fallbacks(count)
+    return count
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_overlays_done_another_way_are_counted_wherever_the_work_is_done(threads):
+    fallbacks.take_fallbacks()
+    with workers.open_pool(threads) as run:
+        assert list(run(fall_back, ((n,) for n in (2, 0, 3)))) == [2, 0, 3]
+    assert fallbacks.take_fallbacks() == 5

@@ -14,6 +14,7 @@ from typing import TextIO, TypeVar
 
 from scanplan import interrupts
 from scanplan.errors import MORE_MEMORY, StageError, show_controls
+from scanplan.geometry import fallbacks
 from scanplan.plain_types import FilePath
 from scanplan.stage import bytecode, orphans
 
@@ -69,7 +70,14 @@ def log_to_file(path: FilePath) -> Iterator[None]:
         finally:
             for number, handler in handlers.items():
                 signal.signal(number, handler)
+            _tell_fallbacks()
             _log.info("stage %s", outcome)
+
+
+def _tell_fallbacks() -> None:
+    """Say how many overlays of shapes GEOS could not do at first, where there were any."""
+    if n_fallbacks := fallbacks.take_fallbacks():
+        _log.info("overlays done another way, for GEOS contradicted itself: %d", n_fallbacks)
 
 
 @contextmanager

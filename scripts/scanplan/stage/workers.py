@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from scanplan.errors import StageError
+from scanplan.geometry import fallbacks
 from scanplan.stage import orphans
 
 Job = TypeVar("Job")
@@ -158,10 +159,12 @@ def _begin_worker(setup: Callable[..., None] | None, state: tuple[Any, ...]) -> 
         _setup_fault = error
 
 
-def _work(function: Callable[..., Any], job: tuple[Any, ...]) -> Any:
+def _work(function: Callable[..., Any], job: tuple[Any, ...]) -> tuple[Any, int]:
+    """Return what a job returns, and how many overlays it had done another way."""
     if _setup_fault is not None:
         raise _setup_fault
-    return function(*job)
+    fallbacks.take_fallbacks()
+    return function(*job), fallbacks.take_fallbacks()
 
 
 def _run_in_order(
@@ -170,10 +173,16 @@ def _run_in_order(
     jobs: Iterable[tuple[Any, ...]],
     most_waiting: int,
 ) -> Iterator[Any]:
-    waiting: deque[Future[Any]] = deque()
+    waiting: deque[Future[tuple[Any, int]]] = deque()
+
+    def take_first() -> Any:
+        result, n_fallbacks = waiting.popleft().result()
+        fallbacks.note_fallbacks(n_fallbacks)
+        return result
+
     for job in jobs:
         waiting.append(executor.submit(_work, function, job))
         while waiting and (waiting[0].done() or len(waiting) > most_waiting):
-            yield waiting.popleft().result()
+            yield take_first()
     while waiting:
-        yield waiting.popleft().result()
+        yield take_first()
