@@ -1,9 +1,13 @@
 """What several tests share."""
 
+import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import hypothesis
 import pytest
+from shapely.geometry.base import BaseGeometry
 
 # a shared machine is slow at times: how long an example takes says nothing of the code
 hypothesis.settings.register_profile(
@@ -12,6 +16,25 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile("steady")
 
 ROOT = Path(__file__).resolve().parents[1]
+
+
+def refuse_in_scripts(operator: Callable[..., Any]) -> Callable[..., Any]:
+    """Return an operator of geometries that the code of `scripts/` may not use, as tests may.
+
+    What a name is of cannot be read from the code, as for the calls that `test_house` looks for.
+    """
+    scripts = str(ROOT / "scripts")
+
+    def checked(one: BaseGeometry, other: BaseGeometry) -> Any:
+        caller = sys._getframe(1).f_code
+        assert not caller.co_filename.startswith(scripts), f"{caller}: ask geometry/overlays.py"
+        return operator(one, other)
+
+    return checked
+
+
+for name in ("__or__", "__and__", "__sub__", "__xor__"):
+    setattr(BaseGeometry, name, refuse_in_scripts(getattr(BaseGeometry, name)))
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+import shapely
 
 import house_figures
 
@@ -226,6 +227,15 @@ def test_only_overlays_asks_for_overlays():
 def test_an_overlay_elsewhere_is_found_with_its_line(planted):
     place = PACKAGE / "plan/planted.py"
     assert find_overlays(place, planted) == ["scripts/scanplan/plan/planted.py:2"]
+
+
+@pytest.mark.parametrize("operator", "|&-^")
+def test_an_operator_of_shapes_is_refused_in_scripts_and_nowhere_else(operator):
+    shapes = {"one": shapely.box(0, 0, 2, 1), "other": shapely.box(1, 0, 3, 1)}
+    code = f"one {operator} other"
+    assert eval(compile(code, __file__, "eval"), shapes).area in (1, 2, 3)  # noqa: S307
+    with pytest.raises(AssertionError, match="overlays"):
+        eval(compile(code, PACKAGE / "planted.py", "eval"), shapes)  # noqa: S307
 
 
 def read_by_rules() -> set[str]:

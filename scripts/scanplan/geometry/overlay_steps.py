@@ -139,13 +139,13 @@ def parts_of(shape: BaseGeometry, dimension: int) -> BaseGeometry:
 
 def repair_shapes(shapes: Shapes, **options: Any) -> Answer:
     """Return valid shapes; options as for `shapely.make_valid`."""
-    repaired = shapely.make_valid(shapes, **options)
-    if np.all(shapely.is_valid(repaired)):
-        return repaired
-    # of slivers that cross one another GEOS makes holes outside of their shells
-    by_rings = shapely.make_valid(shapes, method="structure", keep_collapsed=False)
-    found = np.where(shapely.is_valid(repaired), repaired, by_rings)
-    return found[()]
+    repaired = np.asarray(shapely.make_valid(shapes, **options), object)
+    is_valid = shapely.is_valid(repaired)
+    if not np.all(is_valid):
+        # of slivers that cross one another GEOS makes holes outside of their shells
+        by_rings = shapely.make_valid(shapes, method="structure", keep_collapsed=False)
+        repaired = np.where(is_valid, repaired, np.asarray(by_rings, object))
+    return repaired[()]
 
 
 def round_shape(shape: BaseGeometry, grid: float) -> BaseGeometry:
