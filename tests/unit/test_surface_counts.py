@@ -3,6 +3,8 @@
 Columns of 5 cm begin at x = 0, rows of 0.2 m at 0.1 m; a ray at 1.2 m is in row 5.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -177,7 +179,8 @@ class TestLost:
 
     def test_of_a_tilted_sensor_nothing_is_known_to_be_lost(self, looked, counts):
         own = [Side(NORTH, 0.24, ALL)]
-        tilted = count_ends(looked, NORTH, 0.0, 4.0, own, np.zeros(3, bool)).ends
+        upset = replace(looked, is_level=np.zeros(3, bool))
+        tilted = count_ends(upset, NORTH, 0.0, 4.0, own).ends
         assert tilted[..., LOST].sum() == 0
         np.testing.assert_array_equal(tilted[..., :LOST] > 0, counts.ends[..., :LOST] > 0)
 

@@ -42,7 +42,7 @@ from scanplan.rays.face_observation import RaySettings
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.store import schemas
-from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray, Settings
+from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
 
 TABLES = {
     "faces": schemas.FACES,
@@ -193,12 +193,12 @@ def make_plan(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
+    rays = replace(rays, is_level=np.abs(up[:, 2]) >= _LEVEL)
     gaps = settings.openings
     find_free = workers.begin_in_thread(
         *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
     )
-    is_level = np.abs(up[:, 2]) >= _LEVEL
-    survey = _Survey(settings, rays, track_m, is_level, find_free, find_seen, threads)
+    survey = _Survey(settings, rays, track_m, find_free, find_seen, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls = survey.decide_kinds(surfaces, spaces.rooms)
@@ -292,8 +292,6 @@ class _Survey:
     rays : ray_set.RaySet
         Their ranges set right.
     track_m : (k, 2) float64
-    is_level : (s,) bool
-        Which of the chosen scans were taken with the sensor upright.
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
     find_seen : callable, optional
@@ -304,7 +302,6 @@ class _Survey:
     settings: PlanSettings
     rays: RaySet
     track_m: FloatArray
-    is_level: BoolArray
     find_free: Callable[[], _Free]
     find_seen: Callable[[], BaseGeometry] | None
     threads: int
@@ -341,7 +338,6 @@ class _Survey:
             labelled = label_surfaces(
                 *(walls, self.rays),
                 max_opening_m=self.settings.openings.max_opening_m,
-                is_level=self.is_level,
             )
             walls, tops_m = labelled.walls, labelled.tops_m
             open_leaves_m = labelled.leaves_m

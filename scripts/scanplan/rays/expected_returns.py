@@ -15,7 +15,7 @@ import numpy as np
 
 from scanplan.rays.azimuth_sectors import N_SECTORS
 from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
-from scanplan.types import Array, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 if TYPE_CHECKING:
     from scanplan.rays.face_rays import FaceRays
@@ -29,6 +29,7 @@ NEAR_M = 10.0
 Their rays are few, and much stands before the surface.
 """
 
+_GRAZING = np.tan(GRAZING_RAD)
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
 DEEP_M = 0.6  # no wall is thicker
@@ -108,11 +109,7 @@ class SentRays:
         NaN where too few are to be expected for anything to be said, or fewer scans than
         `least_scans` sent any and these not `lone_rays`.
         """
-        expected = sum_neighbours(self.expected, self.width)
-        occluded = sum_neighbours(self.occluded, self.width)
-        # where things hide the surface from a scan it says nothing: rays along the tops of
-        # furniture get lost
-        clear = occluded < STRAY_SHARE * expected
+        expected, occluded, clear = self._sum_clear()
         reached = ((expected - occluded) * clear).sum(axis=0)
         returned = (sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
         in_wall = (sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
@@ -121,6 +118,23 @@ class SentRays:
         enough |= reached >= self.lone_rays
         known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
         return known[0], known[1], known[2]
+
+    def missing(self) -> FloatArray:
+        """Return how many rays of each single view that reached a column are nowhere, (v, n)."""
+        expected, occluded, clear = self._sum_clear()
+        returned = sum_neighbours(self.returned, self.width)
+        says = clear & (expected >= FEW)
+        return np.maximum(expected - occluded - returned, 0.0) * says / self.width
+
+    def _sum_clear(self) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """Return what is expected and occluded of each column and those around it, (v, n).
+
+        And where a view says anything: where things hide the surface from it, it does not, as rays
+        along the tops of furniture get lost.
+        """
+        expected = sum_neighbours(self.expected, self.width)
+        occluded = sum_neighbours(self.occluded, self.width)
+        return expected, occluded, occluded < STRAY_SHARE * expected
 
     def lost(self) -> FloatArray:
         """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
@@ -160,28 +174,11 @@ def count_sent_rays(
     """
     views = face.views
     counts = np.broadcast_to(count, len(views.scan))
+    is_looking, expected = _expect_returns(rays, face, low_m, counts, column_m, heights_m)
     high_m = low_m + column_m * counts
-    beyond_m = np.maximum(low_m - views.sensor_along_m, views.sensor_along_m - high_m)
-    grazing_m = np.tan(GRAZING_RAD) * views.side_m  # along the line, from where the sensor stands
-    is_near = np.hypot(views.side_m, np.maximum(beyond_m, 0)) <= NEAR_M
-    is_looking = is_near & (beyond_m <= grazing_m) & (views.side_m >= views.least_side_m)
-    (looking,) = np.nonzero(is_looking)
-    number = np.arange(counts.max(initial=0))
-    away_m = low_m + column_m * (number + 0.5) - views.sensor_along_m[looking, None]
     bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
-    distance_m = np.hypot(away_m, views.side_m[looking, None])
-    if rays.planar:
-        # from the shortest way to the plane
-        turn_rad = np.arctan2(away_m, views.side_m[looking, None])
-        normal_x, normal_y = views.normal[looking].T[:, :, None]
-        azimuth_rad = np.arctan2(-normal_y, -normal_x) + turn_rad
-        per_deg = rays.beams.per_deg_at(views.scan[looking], azimuth_rad, distance_m)
-    else:
-        heights = bottom_m[looking, None], top_m[looking, None]
-        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
-    expected = per_deg * np.rad2deg(column_m * views.side_m[looking, None] / distance_m**2)
-    expected *= np.abs(away_m) < grazing_m[looking, None]
-    expected *= number < counts[looking, None]
+    grazing_m = _GRAZING * views.side_m
+    n_columns = expected.shape[1]
     view, along_m, height_m = face.view, face.along_m, face.height_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m.take(view))
     is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
@@ -190,7 +187,7 @@ def count_sent_rays(
     behind_m = face.behind_m.take(rows)
     column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
     row = np.cumsum(is_looking) - 1
-    cell = row.take(view.take(rows)) * len(number) + np.minimum(column, len(number) - 1)
+    cell = row.take(view.take(rows)) * n_columns + np.minimum(column, n_columns - 1)
     is_returned = behind_m >= -ON_M
     kinds = (~is_returned, is_returned, is_returned & (behind_m <= DEEP_M))
     occluded, returned, in_wall = (
@@ -200,7 +197,59 @@ def count_sent_rays(
     width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
     # of a planar scanner it is known which beams it sent, and walls return nearly all
     least, lone = (_LEAST_RAYS / 2, _LEAST_RAYS) if rays.planar else (_LEAST_RAYS, np.inf)
+    (looking,) = np.nonzero(is_looking)
     return SentRays(looking, expected, occluded, returned, in_wall, width, least, lone)
+
+
+def expect_returns(
+    rays: "RaySet",
+    face: "FaceRays",
+    low_m: float,
+    count: int,
+    column_m: float,
+    heights_m: tuple[float, float],
+) -> FloatArray:
+    """Return how many returns there ought to be of the columns of a surface, (v, n).
+
+    As `count_sent_rays`, of the same views in the same order.
+    """
+    counts = np.broadcast_to(count, len(face.views.scan))
+    return _expect_returns(rays, face, low_m, counts, column_m, heights_m)[1]
+
+
+def _expect_returns(
+    rays: "RaySet",
+    face: "FaceRays",
+    low_m: float,
+    counts: IntArray,
+    column_m: float,
+    heights_m: tuple[float, float] | FloatArray,
+) -> tuple[BoolArray, FloatArray]:
+    """Return which views look at their columns, and the returns (v, n) to be expected of these."""
+    views = face.views
+    high_m = low_m + column_m * counts
+    beyond_m = np.maximum(low_m - views.sensor_along_m, views.sensor_along_m - high_m)
+    grazing_m = _GRAZING * views.side_m  # along the line, from where the sensor stands
+    is_near = np.hypot(views.side_m, np.maximum(beyond_m, 0)) <= NEAR_M
+    is_looking = is_near & (beyond_m <= grazing_m) & (views.side_m >= views.least_side_m)
+    (looking,) = np.nonzero(is_looking)
+    number = np.arange(counts.max(initial=0))
+    away_m = low_m + column_m * (number + 0.5) - views.sensor_along_m[looking, None]
+    distance_m = np.hypot(away_m, views.side_m[looking, None])
+    if rays.planar:
+        # from the shortest way to the plane
+        turn_rad = np.arctan2(away_m, views.side_m[looking, None])
+        normal_x, normal_y = views.normal[looking].T[:, :, None]
+        azimuth_rad = np.arctan2(-normal_y, -normal_x) + turn_rad
+        per_deg = rays.beams.per_deg_at(views.scan[looking], azimuth_rad, distance_m)
+    else:
+        bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
+        heights = bottom_m[looking, None], top_m[looking, None]
+        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
+    expected = per_deg * np.rad2deg(column_m * views.side_m[looking, None] / distance_m**2)
+    expected *= np.abs(away_m) < grazing_m[looking, None]
+    expected *= number < counts[looking, None]
+    return is_looking, expected
 
 
 def _returns_per_deg(

@@ -13,7 +13,7 @@ import numpy as np
 
 from scanplan.rays import azimuth_sectors, beam_spread, expected_returns, levels
 from scanplan.stage import workers
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _STEEP = np.tan(np.radians(20))  # up: beams of a lidar that looks level go no steeper
 _TURN = 10.0  # more than a turn, so that the keys of scans do not overlap
@@ -36,6 +36,9 @@ class RaySet:
         Height of the floor; NaN for planar scans.
     planar : bool
         Whether the scans lie in one level plane, so that heights mean nothing.
+    is_level : (s,) bool
+        Which were taken with the sensor upright: how many rays others send up or down changes with
+        the direction, so that of them nothing is known to be lost.
     """
 
     scan_ids: IntArray
@@ -45,6 +48,7 @@ class RaySet:
     xyz_m: FloatArray
     floor_z_m: float
     planar: bool
+    is_level: BoolArray
 
     @property
     def ground_z_m(self) -> float:
@@ -216,6 +220,7 @@ def gather_rays(
         if planar
         else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
         planar=bool(planar),
+        is_level=np.ones(len(scan_ids), bool),
     )
 
 

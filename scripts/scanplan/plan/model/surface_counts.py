@@ -4,7 +4,7 @@ Scans of one place see the same with the same errors: what they say of a cell is
 whatever the number of their rays. Planar scans have one row of heights.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +12,9 @@ import numpy as np
 from scanplan.geometry.lines import Line
 from scanplan.rays import expected_returns
 from scanplan.rays.face_rays import FaceRays, cast_at_face
+from scanplan.rays.lost_rays import find_lost
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, STRAY_SHARE
+from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 COLUMN_M = 0.05
@@ -27,9 +28,7 @@ FACE, SHALLOW, DEEP, BEYOND, LOST = range(5)
 N_ENDS = 5
 _SHALLOW_M = 0.12  # leaves of doors hang no deeper, panes and the far sides of reveals do
 _SQUARE = np.tan(np.radians(10))  # a pane answers no farther from square: beams of 3 mrad on glass
-_TINY = 1e-9  # rays: none
 _PLACE_M = 0.5  # scans no farther apart are one place: what they see differs by less than a door
-_BANDS = 2  # rows that are asked together for what is lost: of single ones too little is expected
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +99,6 @@ def count_ends(
     low_m: float,
     high_m: float,
     sides: Sequence[Side],
-    is_level: BoolArray | None = None,
 ) -> SurfaceCounts:
     """Count what rays say of a wall between two places along its line, from all its sides.
 
@@ -111,9 +109,6 @@ def count_ends(
         Along which columns are counted.
     low_m, high_m : float
     sides : sequence of Side
-    is_level : (s,) bool, optional
-        Which scans were taken with the sensor upright, all by default: how many rays others send
-        up or down changes with the direction, so that of them nothing is known to be lost.
     """
     n_columns = max(int(np.ceil((high_m - low_m) / COLUMN_M)), 1)
     grid = _Grid(wall, low_m, n_columns, 1 if rays.planar else len(ROWS_M) - 1)
@@ -121,7 +116,7 @@ def count_ends(
     is_only = not any(side.line.normal @ sides[0].line.normal < 0 for side in sides)
     total = np.zeros((n_columns, grid.n_rows, 2, N_ENDS))
     for side in sides:
-        total += _count_side(rays, grid, side, place, is_only=is_only, is_level=is_level)
+        total += _count_side(rays, grid, side, place, is_only=is_only)
     return SurfaceCounts(low_m, total)
 
 
@@ -138,7 +133,6 @@ def _count_side(
     place: IntArray,
     *,
     is_only: bool,
-    is_level: BoolArray | None,
 ) -> FloatArray:
     span_m = np.sort(side.line.along_m(grid.wall.at(grid.ends_m)))
     face = cast_at_face(
@@ -154,16 +148,24 @@ def _count_side(
     cells = (place[face.scan[kept]], column[kept], row[kept])
     is_oblique = (~_is_square(rays, face)[kept]).astype(np.int64)
     ended = np.ravel_multi_index((*cells, is_oblique, end[kept]), shape)
-    lost, n_lost = _find_lost(rays, face, grid, side, float(span_m[0]), place, shape, is_level)
-    key, inverse = np.unique(np.concatenate([ended, lost]), return_inverse=True)
-    counted = np.bincount(inverse, np.concatenate([np.ones(len(ended)), n_lost]), len(key))
-    weight = counted.astype(float)  # of nothing numpy counts in whole numbers
+    lost = find_lost(rays, face, float(span_m[0]), grid.n_columns, COLUMN_M, _row_edges_m(grid))
+    column = grid.columns_of(side.line, span_m[0] + (lost.column + 0.5) * COLUMN_M)
+    known = np.flatnonzero((column >= 0) & rays.is_level[lost.scan])
+    of_lost = (place[lost.scan[known]], column[known], lost.row[known], 1, LOST)
+    ended = np.append(ended, np.ravel_multi_index(np.broadcast_arrays(*of_lost), shape))
+    number = np.append(np.ones(len(kept)), lost.count[known])
+    key, inverse = np.unique(ended, return_inverse=True)
+    weight = np.bincount(inverse, number, len(key)).astype(float)  # of nothing it counts in int
     # what one place says of a cell is one witness
     _, of_cell = np.unique(key // (2 * N_ENDS), return_inverse=True)
     weight /= np.maximum(np.bincount(of_cell, weight), 1.0)[of_cell]
     size = int(np.prod(shape[1:]))
     counts = np.asarray(np.bincount(key % size, weight, minlength=size), float).reshape(shape[1:])
     return counts * _is_asked(side, grid)[:, None, None, None]
+
+
+def _row_edges_m(grid: _Grid) -> FloatArray:
+    return ROWS_M if grid.n_rows > 1 else np.array(expected_returns.ALL_HEIGHTS_M)
 
 
 def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
@@ -200,70 +202,3 @@ def _is_asked(side: Side, grid: _Grid) -> BoolArray:
     middle_m = grid.first_m + COLUMN_M * (np.arange(grid.n_columns) + 0.5)
     begins_m, ends_m = side.spans_m.T
     return ((middle_m[:, None] >= begins_m) & (middle_m[:, None] < ends_m)).any(axis=1)
-
-
-def _find_lost(
-    rays: RaySet,
-    face: FaceRays,
-    grid: _Grid,
-    side: Side,
-    first_m: float,
-    place: IntArray,
-    shape: tuple[int, ...],
-    is_level: BoolArray | None,
-) -> tuple[IntArray, FloatArray]:
-    """Return the cells, as `shape` numbers them, that rays were lost at, and how many were."""
-    keys: list[IntArray] = [np.empty(0, np.int64)]
-    counts: list[FloatArray] = [np.empty(0)]
-    for rows, heights_m in _bands(grid.n_rows):
-        sent = expected_returns.count_sent_rays(
-            *(rays, face, first_m, grid.n_columns, COLUMN_M, heights_m)
-        )
-        view, number, missing = _find_missing(sent)
-        column = grid.columns_of(side.line, first_m + (number + 0.5) * COLUMN_M)
-        ok = column >= 0
-        if is_level is not None:
-            ok &= is_level[face.views.scan[sent.view[view]]]
-        view, number, missing, column = view[ok], number[ok], missing[ok], column[ok]
-        of_place = place[face.views.scan[sent.view[view]]]
-        for row in rows:
-            # of a row that the beams hardly reach as little is lost
-            own = _expect(rays, face, grid, first_m, row)[view, number]
-            share = own / np.maximum(sent.expected[view, number], _TINY)
-            cells = (of_place, column, np.full(len(column), row), np.ones(len(column), np.int64))
-            keys.append(np.ravel_multi_index((*cells, np.full(len(column), LOST)), shape))
-            counts.append(missing * np.minimum(share, 1.0))
-    return np.concatenate(keys), np.concatenate(counts)
-
-
-def _expect(rays: RaySet, face: FaceRays, grid: _Grid, first_m: float, row: int) -> FloatArray:
-    """Return how many rays views are expected to send to the columns of a row of heights."""
-    heights_m = expected_returns.ALL_HEIGHTS_M
-    if grid.n_rows > 1:
-        heights_m = (float(ROWS_M[row]), float(ROWS_M[row + 1]))
-    sent = expected_returns.count_sent_rays(
-        *(rays, face, first_m, grid.n_columns, COLUMN_M, heights_m)
-    )
-    return sent.expected
-
-
-def _bands(n_rows: int) -> Iterator[tuple[range, tuple[float, float]]]:
-    """Yield the rows that are asked together, and between which heights they are."""
-    if n_rows == 1:
-        yield range(1), expected_returns.ALL_HEIGHTS_M
-        return
-    for first in range(0, n_rows, _BANDS):
-        last = min(first + _BANDS, n_rows)
-        yield range(first, last), (float(ROWS_M[first]), float(ROWS_M[last]))
-
-
-def _find_missing(sent: expected_returns.SentRays) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return views, columns, and how many rays of these single views are missing there."""
-    expected, occluded, returned = (
-        expected_returns.sum_neighbours(part, sent.width)
-        for part in (sent.expected, sent.occluded, sent.returned)
-    )
-    is_clear = (occluded < STRAY_SHARE * expected) & (expected >= FEW)
-    missing = np.maximum(expected - occluded - returned, 0.0) * is_clear / sent.width
-    view, column = np.nonzero(missing)
-    return view, column, missing[view, column]

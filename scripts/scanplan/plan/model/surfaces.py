@@ -9,7 +9,7 @@ from scanplan.plan.model import glass_views, things, wall_labels
 from scanplan.plan.model.surface_features import Surroundings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import FloatArray
 
 _WALL_TOP_M = 2.0  # what ends lower, and has no other side, is a side of something
 
@@ -38,7 +38,6 @@ def label_surfaces(
     rays: RaySet,
     *,
     max_opening_m: float,
-    is_level: BoolArray | None = None,
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -49,15 +48,11 @@ def label_surfaces(
     rays : ray_set.RaySet
     max_opening_m : float
         What is open for longer parts a wall in two.
-    is_level : (s,) bool, optional
-        As of `surface_counts.count_ends`.
     """
     parts = [
         (part, top_m)
         for wall in walls
-        for part, top_m in wall_labels.label_wall(
-            wall, rays, max_opening_m=max_opening_m, is_level=is_level
-        )
+        for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
         if part.right or not top_m < _WALL_TOP_M
     ]
     of_part = [part for part, _ in parts]
@@ -65,7 +60,7 @@ def label_surfaces(
     around = Surroundings(of_part)
     kinds = []
     for number, (part, top_m) in enumerate(parts):
-        counts = wall_labels.count_wall(part, rays, is_level)
+        counts = wall_labels.count_wall(part, rays)
         found = around.observe(number, counts, top_m, shares[number])
         kinds.append(int(np.argmax(things.weigh_things(found, planar=rays.planar))))
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]

@@ -17,23 +17,20 @@ from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import FloatArray
 
 _DEEP_M = 0.4  # behind a face whose other side nobody saw: as thick as most facades
 
 
-def count_wall(wall: PlanWall, rays: RaySet, is_level: BoolArray | None = None) -> SurfaceCounts:
-    """Return what rays say of a wall from its one end to the other, from all its sides.
-
-    `is_level` as of `surface_counts.count_ends`.
-    """
+def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
+    """Return what rays say of a wall from its one end to the other, from all its sides."""
     return surface_counts.count_ends(
-        rays, wall.line, wall.low_m, wall.high_m, list(_list_sides(wall)), is_level
+        rays, wall.line, wall.low_m, wall.high_m, list(_list_sides(wall))
     )
 
 
 def label_wall(
-    wall: PlanWall, rays: RaySet, *, max_opening_m: float, is_level: BoolArray | None = None
+    wall: PlanWall, rays: RaySet, *, max_opening_m: float
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -44,10 +41,8 @@ def label_wall(
     rays : ray_set.RaySet
     max_opening_m : float
         What is open for longer parts a wall in two.
-    is_level : (s,) bool, optional
-        As of `surface_counts.count_ends`.
     """
-    counts = count_wall(wall, rays, is_level)
+    counts = count_wall(wall, rays)
     stretches = line_labels.label_line(counts, is_outer=not wall.right)
     stretches[-1] = replace(stretches[-1], high_m=wall.high_m)
     for run in _part_runs(stretches, max_opening_m):
