@@ -116,7 +116,7 @@ def ablate(
         `scores`, and `tables`, a digest that tells plans apart; `BASE` is without any rule off.
     """
     kept.mkdir(parents=True, exist_ok=True)
-    own = _own_settings(results, settings)
+    own = own_settings(results, settings)
     survey = _digest([json.dumps(own, sort_keys=True), *_survey_parts(results, own)])
     planar = tables.ScanStore(results / "scans.parquet").planar
     chosen = {name: RULES[name] for name in names}
@@ -144,7 +144,7 @@ def _measure(
         plan = Path(folder) / "plan"
         plan.mkdir()
         try:
-            _make_plan(results, settings, rule, plan)
+            make_plan(results, settings, rule, plan)
         except Exception as error:
             # that there is no plan without it is what a rule is worth
             if not rule.switches:
@@ -157,7 +157,7 @@ def _measure(
         return {"tables": digest, "scores": scores}
 
 
-def _make_plan(results: Path, settings: Settings, rule: Rule, plan: Path) -> None:
+def make_plan(results: Path, settings: Settings, rule: Rule, plan: Path) -> None:
     """Write the tables of a survey's plan without a rule."""
     selection = results / f"selection/{settings['plan']['method']}.parquet"
     scans, registration = results / "scans.parquet", results / "registration.parquet"
@@ -180,7 +180,7 @@ def _make_plan(results: Path, settings: Settings, rule: Rule, plan: Path) -> Non
         )
 
 
-def _own_settings(results: Path, settings: Settings) -> Settings:
+def own_settings(results: Path, settings: Settings) -> Settings:
     """Return settings with what the dataset's own file says, where that is still there."""
     source = Path((results / "source.txt").read_text().strip())
     if not dataset_files.is_survey_file(source):

@@ -7,6 +7,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py table FOLDER [SURVEY ...]
        run.py compare FOLDER FOLDER
        run.py ablate FOLDER [SURVEY | HALF | KIND | subset | RULE ...]
+       run.py fit_things FOLDER [HALF | KIND | FLOOR ...]
        run.py confidence FOLDER SURVEY,... SURVEY,...
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
@@ -34,6 +35,10 @@ fell.
 the plan at a time, and prints what each rule is worth: two drives at once, a few seconds a rule.
 Surveys and rules may be named, as in ablate FOLDER intel "narrow places"; else what is only ever
 reported on is left out.
+
+`fit_things` fits what tells walls from leaves, furniture and what is outside on the tuning floors
+that `realistic` has finished in FOLDER, and prints the table for `plan/model/things.py`, and what
+it is worth on kinds of buildings that it was not fitted on.
 
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
@@ -167,6 +172,13 @@ def bench_pipeline(*words: str) -> None:
     pipeline_bench.bench(ROOT, SETTINGS, kept.resolve(), given[1:], n_big=n_big)
 
 
+def fit_things(folder: str, *names: str) -> None:
+    """Densities of what surfaces are sides of."""
+    import fit_things
+
+    fit_things.bench(Path(folder), names, SETTINGS)
+
+
 def fit_confidence(folder: str, train: str, test: str) -> None:
     """Write the coefficients of the confidence in a plan's elements."""
     import confidence_bench
@@ -244,6 +256,7 @@ APART: dict[str, Callable[..., None]] = {
     "guard": record_guard,
     "table": print_table,
     "compare": compare_guards,
+    "fit_things": fit_things,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,

@@ -1,4 +1,4 @@
-"""What is around toy surfaces: corners, jambs, what runs behind, what rays pass over."""
+"""What is around toy surfaces: corners, jambs, what runs behind, what rays say of them."""
 
 import math
 from dataclasses import replace
@@ -18,7 +18,7 @@ NOTHING = SurfaceCounts(0.0, np.zeros((20, 20, 2, N_ENDS)))
 
 
 def look(walls, number=0, counts=NOTHING):
-    return Surroundings(walls).observe(number, counts, NAN, 0.0)
+    return Surroundings(walls).observe([counts] * len(walls), np.zeros(len(walls)))[number]
 
 
 def with_face(made):
@@ -37,26 +37,22 @@ def with_door(made, low_m, high_m, kind="door"):
 class TestCorners:
     def test_a_wall_of_a_room_has_inner_corners(self):
         """Seen from inside, the next walls come forward at both ends."""
-        found = look(box())
-        assert (found.n_inner, found.n_outer) == (2, 0)
+        assert look(box()).n_inner == 2
 
-    def test_a_side_of_a_cupboard_has_outer_ones(self):
+    def test_a_side_of_a_cupboard_has_none(self):
         """Seen from outside, its other sides go back."""
         around = [(0, 0), (0, 1), (1, 1), (1, 0), (0, 0)]
         sides = [wall(*a, *b, NAN) for a, b in pairwise(around)]
-        found = look(sides)
-        assert (found.n_inner, found.n_outer) == (0, 2)
+        assert look(sides).n_inner == 0
 
-    def test_a_niche_has_one_of_each(self):
+    def test_a_niche_has_one(self):
         """Along +x, seen from the north: a wall comes forward at its begin, another goes back."""
         walls = [wall(0, 0, 2, 0, NAN), wall(0, 2, 0, 0, NAN), wall(2, 0, 2, -2, NAN)]
-        found = look(walls)
-        assert (found.n_inner, found.n_outer) == (1, 1)
+        assert look(walls).n_inner == 1
 
     def test_what_goes_on_straight_or_far_away_is_no_corner(self):
         walls = [wall(0, 0, 2, 0, NAN), wall(2, 0, 4, 0, NAN), wall(-0.5, 2, -0.5, 0, NAN)]
-        found = look(walls)
-        assert (found.n_inner, found.n_outer) == (0, 0)
+        assert look(walls).n_inner == 0
 
     def test_of_a_thick_wall_corners_are_at_its_face(self):
         """A wall across ends 0.3 m from the middle of one of 0.4 m."""
@@ -71,22 +67,26 @@ class TestHinge:
     def test_an_open_leaf_ends_at_the_jamb_and_is_as_long_as_the_opening(self):
         """It hangs at x = 2 on the wall's northern face, y = 0.1, and is 0.85 m long."""
         found = look([wall(2, 0.1, 2, 0.95, NAN), self.FACADE])
-        assert found.hinge_m == pytest.approx(0)
-        assert found.fits_door_m == pytest.approx(0.85 - 0.9)
+        assert found.hinge_m == pytest.approx(0.9 - 0.85)
 
     def test_of_two_openings_it_is_the_one_that_fits(self):
         """At x = 2.9 begins another one of 1.6 m."""
         facade = wall(0, 0, 5, 0, 0.2, openings=[(2.0, 2.9), (2.9, 4.5)])
         facade = replace(facade, openings=[replace(o, kind="door") for o in facade.openings])
         found = look([wall(2.9, 0.1, 2.9, 1.0, NAN), facade])
-        assert (found.hinge_m, found.fits_door_m) == pytest.approx((0, 0), abs=1e-9)
+        assert found.hinge_m == pytest.approx(0, abs=1e-9)
+
+    def test_off_its_jamb_and_too_long_it_fits_less(self):
+        """0.3 m beside the jamb, and 0.4 m longer than the opening."""
+        found = look([wall(1.7, 0.1, 1.7, 1.4, NAN), self.FACADE])
+        assert found.hinge_m == pytest.approx(0.5)
 
     def test_its_own_openings_and_windows_are_none(self):
         own = look([self.FACADE])
         window = with_door(wall(0, 0, 5, 0, 0.2), 2.0, 2.9, kind="window")
         other = look([wall(2, 0.1, 2, 0.95, NAN), window])
         for found in (own, other):
-            assert math.isinf(found.hinge_m) and math.isinf(found.fits_door_m)
+            assert math.isinf(found.hinge_m)
 
     @pytest.mark.parametrize("width_m", [0.4, 2.6])
     def test_no_leaf_hangs_in_what_is_narrower_or_wider_than_doors(self, width_m):
@@ -99,7 +99,7 @@ class TestBehind:
 
     def test_a_wall_that_faces_the_same_way_runs_behind_a_cupboard(self):
         found = look([self.FRONT, with_face(wall(0, 0, 5, 0, NAN))])
-        assert found.behind_m == pytest.approx(0.6)
+        assert found.before_m == pytest.approx(0.6)
 
     @pytest.mark.parametrize(
         "other",
@@ -112,7 +112,7 @@ class TestBehind:
         ],
     )
     def test_nothing_else_is_behind_it(self, other):
-        assert math.isinf(look([self.FRONT, with_face(other)]).behind_m)
+        assert math.isinf(look([self.FRONT, with_face(other)]).before_m)
 
 
 class TestOverlooked:
@@ -139,8 +139,8 @@ class TestOverlooked:
         counts = self.counts([5] * 4 + [20] * 12 + [0] * 4)
         assert look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked == pytest.approx(4 / 16)
 
-    def test_less_than_a_witness_is_none(self):
-        assert look([wall(0, 0, 1, 0, NAN)], counts=self.counts(5, n=0.9)).overlooked == 0
+    def test_half_a_witness_is_none(self):
+        assert look([wall(0, 0, 1, 0, NAN)], counts=self.counts(5, n=0.5)).overlooked == 0
 
     def test_openings_are_not_asked(self):
         """A window from 0.25 to 0.5 m."""
@@ -149,16 +149,81 @@ class TestOverlooked:
         assert look([made], counts=counts).overlooked == 0
         assert look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked == pytest.approx(5 / 20)
 
-    def test_in_the_plane_nothing_is(self):
-        ends = np.full((20, 1, 2, N_ENDS), 3.0)
-        made = [wall(0, 0, 1, 0, NAN)]
-        assert look(made, counts=SurfaceCounts(0.0, ends)).overlooked == 0
+    def test_in_the_plane_nothing_is_known_of_it(self):
+        counts = SurfaceCounts(0.0, np.full((20, 1, 2, N_ENDS), 3.0))
+        assert math.isnan(look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked)
 
-    def test_of_what_was_not_seen_at_all_nothing_is_known(self):
+    def test_what_was_not_seen_at_all_is_not_overlooked(self):
         assert look([wall(0, 0, 1, 0, NAN)]).overlooked == 0
 
 
+class TestWhatRaysSay:
+    """One metre in columns of 5 cm, rows of 0.2 m, of single walls."""
+
+    def test_what_is_an_opening_is_not_solid(self):
+        """A window of 0.25 m; of a column's middle it is told in which it lies."""
+        made = wall(0, 0, 1, 0, NAN, openings=[(0.25, 0.5)])
+        assert look([made]).solid == pytest.approx(0.75)
+
+    def test_what_ends_behind_is_a_share_of_what_ended(self):
+        """Of rows 2 to 4; what passes below and above is none of it."""
+        ends = np.zeros((20, 20, 2, N_ENDS))
+        ends[:, 2:5, 1, FACE] = 3.0
+        ends[:, 3, 1, DEEP] = 1.0
+        ends[:, 8, 1, DEEP] = 5.0
+        ends[:, 3, 1, LOST] = 7.0
+        counts = SurfaceCounts(0.0, ends)
+        assert look([wall(0, 0, 1, 0, NAN)], counts=counts).deep == pytest.approx(1 / 10)
+
+    def test_witnesses_are_counted_in_those_of_the_usual_surface(self):
+        """Ten, four and two of each column."""
+        walls = [wall(0, y, 1, y, NAN) for y in (0, 5, 10)]
+        ends = np.zeros((20, 20, 2, N_ENDS))
+        ends[:, :2, 1, FACE] = 1.0
+        counts = [SurfaceCounts(0.0, ends * of) for of in (5, 2, 1)]
+        found = Surroundings(walls).observe(counts, np.zeros(3))
+        assert [of.witnesses for of in found] == pytest.approx([2.5, 1.0, 0.5])
+
+
+class TestEnds:
+    def test_it_is_the_nearer_end_to_the_body_of_another_wall(self):
+        """One ends 0.3 m from the middle of a wall of 0.2 m, the other 1 m from one."""
+        walls = [wall(0, 0, 3, 0, NAN), wall(3.3, -1, 3.3, 1, 0.2), wall(-1, 1, -1, -1, NAN)]
+        assert look(walls).end_m == pytest.approx(0.2)
+
+    def test_what_stands_alone_ends_nowhere(self):
+        assert math.isinf(look([wall(0, 0, 3, 0, NAN), wall(6, 0, 9, 0, NAN)]).end_m)
+
+
+class TestBack:
+    FRONT = wall(0, 0.5, 1, 0.5, NAN)
+
+    def test_the_back_of_what_stands_free_faces_the_other_way(self):
+        assert look([self.FRONT, wall(1, 0, 0, 0, NAN)]).back_m == pytest.approx(0.5)
+
+    @pytest.mark.parametrize(
+        "other",
+        [
+            pytest.param(wall(0, 0, 1, 0, NAN), id="it faces the same way"),
+            pytest.param(wall(1, 1, 0, 1, NAN), id="it runs before it"),
+            pytest.param(wall(1, -0.6, 0, -0.6, NAN), id="it is farther than furniture is deep"),
+            pytest.param(wall(3, 0, 0.8, 0, NAN), id="it is beside it"),
+        ],
+    )
+    def test_nothing_else_is_its_back(self, other):
+        assert math.isinf(look([self.FRONT, other]).back_m)
+
+
+def test_a_leaf_is_turned_from_the_directions_of_the_walls():
+    """Ten metres along the axes, and a metre at 30 degrees to one of them, 60 to the other."""
+    walls = [wall(0, 0, 5, 0), wall(0, 0, 0, 5), wall(1, 1, 1 + np.sqrt(0.75), 1.5)]
+    turned = [look(walls, number).turned_deg for number in range(3)]
+    assert turned[0] == pytest.approx(turned[1])
+    assert turned[2] - turned[0] == pytest.approx(30, abs=5)
+
+
 def test_what_else_is_known_is_handed_on():
-    found = Surroundings([wall(0, 0, 3, 0, 0.2)]).observe(0, NOTHING, 1.1, 0.4)
+    (found,) = Surroundings([wall(0, 0, 3, 0, 0.2)]).observe([NOTHING], np.array([0.4]))
     assert (found.length_m, found.thickness_m) == pytest.approx((3, 0.2))
-    assert (found.top_m, found.through_glass) == (1.1, 0.4)
+    assert found.through_glass == 0.4
+    assert math.isinf(look([wall(0, 0, 3, 0, NAN)]).thickness_m)

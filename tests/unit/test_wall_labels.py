@@ -13,6 +13,7 @@ from helpers.label_making import (
     solid,
     with_hole,
 )
+from scanplan.plan.model import things
 from scanplan.plan.model.surface_counts import BEYOND, FACE, SHALLOW
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.model.wall_labels import count_wall, label_wall
@@ -125,7 +126,8 @@ class TestLowParts:
         np.testing.assert_allclose(spans_x([one, two]), [(0, 3), (3, 5)], atol=0.06)
         assert np.isnan(one_top_m) and two_top_m == pytest.approx(1.1)
 
-    def test_it_is_left_out_where_one_side_alone_was_seen(self):
+    def test_it_is_left_out_where_one_side_alone_was_seen(self, monkeypatch):
+        monkeypatch.setattr(things, "weigh_things", lambda _: np.eye(4)[things.WALL])
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
         found = label_surfaces([wall], looked, max_opening_m=MAX_OPENING_M)
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3)], atol=0.06)

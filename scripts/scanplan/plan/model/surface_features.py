@@ -8,53 +8,65 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, SurfaceCounts
+from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, SurfaceCounts
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.tolerances import BEHIND_M
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _DOOR_M = (0.5, 2.4)  # openings that leaves hang in, single and double ones
 _BEFORE_M = (0.25, 1.2)  # furniture stands so far before its wall
+_DEEP_M = 1.0  # furniture is no deeper
+_APART_M = 2.0  # farther off a surface stands alone
 _ACROSS = 0.9  # cosine of normals: flatter than that one surface goes on as the other
-_ONE = 1.0  # a witness
-_SEEN = 0.5  # witnesses of a cell that returns came from
+_ALONG = 0.3  # of its length: what overlaps less is beside it, not behind
+_SEEN = 0.5  # witnesses of a cell that returns came from, or that rays passed
 
 
 @dataclass(frozen=True)
 class Features:
-    """What was observed of one surface.
+    """What was observed of one surface; lengths are inf where there is no such thing.
 
     Attributes
     ----------
     length_m, thickness_m : float
-        Thickness NaN of what was seen from one side.
-    top_m : float
-        How high it ends, by its label; NaN where it was not seen to end.
+        Thickness inf of what was seen from one side.
+    solid : float
+        Share of its length that is no opening.
+    witnesses : float
+        How many places saw it, in the mean of its columns and of that of all surfaces.
     overlooked : float
-        On what share of its length rays pass over what was seen of it; 0 of planar scans.
-    n_inner, n_outer : int
-        At how many of its ends another surface comes forward, as in the corners of a room, or goes
-        back, as at those of what stands in it.
+        On what share of its length rays pass over what was seen of it; NaN of planar scans.
+    deep : float
+        Share of the rays to what was seen of it that end a little farther than its face.
+    n_inner : float
+        At how many of its ends another surface comes forward, as in the corners of a room.
+    end_m : float
+        From the nearer of its ends to another surface.
     hinge_m : float
-        From one of its ends to the jamb of an opening of another wall that it fits best; inf
-        without any.
-    fits_door_m : float
-        By how much it is longer than that opening is wide.
-    behind_m : float
-        How far behind it another surface runs that faces the same way; inf without any.
+        By how much it fits no opening of another wall as its leaf: from one of its ends to the
+        jamb, and from its length to the opening's width.
+    before_m : float
+        How far behind it another surface runs that faces the same way.
+    back_m : float
+        How far behind it another surface runs that faces the other way.
+    turned_deg : float
+        From the nearest main direction of the building, 0 to 45.
     through_glass : float
         Share of its rays that come through windows and panes.
     """
 
     length_m: float
     thickness_m: float
-    top_m: float
+    solid: float
+    witnesses: float
     overlooked: float
-    n_inner: int
-    n_outer: int
+    deep: float
+    n_inner: float
+    end_m: float
     hinge_m: float
-    fits_door_m: float
-    behind_m: float
+    before_m: float
+    back_m: float
+    turned_deg: float
     through_glass: float
 
 
@@ -69,38 +81,45 @@ class Surroundings:
 
     walls: Sequence[PlanWall]
 
-    def observe(
-        self, number: int, counts: SurfaceCounts, top_m: float, through_glass: float
-    ) -> Features:
-        """Return the features of a wall, by its number.
+    def observe(self, counts: Sequence[SurfaceCounts], through_glass: FloatArray) -> list[Features]:
+        """Return the features of each wall, given what rays say of it.
 
         Parameters
         ----------
-        number : int
-        counts : surface_counts.SurfaceCounts
-            Of the wall.
-        top_m : float
-        through_glass : float
+        counts : sequence of surface_counts.SurfaceCounts
+            Of each wall.
+        through_glass : (n,) float64
         """
-        wall = self.walls[number]
-        n_inner, n_outer = self._count_corners(number)
-        hinge_m, fits_door_m = self._find_hinge(number)
-        return Features(
-            length_m=wall.length_m,
-            thickness_m=wall.thickness_m,
-            top_m=top_m,
-            overlooked=_overlooked_share(wall, counts),
-            n_inner=n_inner,
-            n_outer=n_outer,
-            hinge_m=hinge_m,
-            fits_door_m=fits_door_m,
-            behind_m=self._find_behind_m(number),
-            through_glass=through_glass,
-        )
+        witnesses = [
+            _Seen.of(wall, of_wall) for wall, of_wall in zip(self.walls, counts, strict=True)
+        ]
+        usual = np.median([seen.witnesses for seen in witnesses]) if witnesses else 1.0
+        return [
+            Features(
+                length_m=wall.length_m,
+                thickness_m=_or_inf(wall.thickness_m),
+                solid=seen.solid,
+                witnesses=seen.witnesses / max(float(usual), _SEEN),
+                overlooked=seen.overlooked,
+                deep=seen.deep,
+                n_inner=self._count_corners(number),
+                end_m=self._find_end_m(number),
+                hinge_m=self._find_hinge_m(number),
+                before_m=self._find_before_m(number),
+                back_m=self._find_back_m(number),
+                turned_deg=float(self._turned_deg[number]),
+                through_glass=float(through_glass[number]),
+            )
+            for number, (wall, seen) in enumerate(zip(self.walls, witnesses, strict=True))
+        ]
+
+    @cached_property
+    def _lines(self) -> list[shapely.LineString]:
+        return [shapely.LineString(wall.ends) for wall in self.walls]
 
     @cached_property
     def _tree(self) -> shapely.STRtree:
-        return shapely.STRtree([shapely.LineString(wall.ends) for wall in self.walls])
+        return shapely.STRtree(self._lines)
 
     @cached_property
     def _jambs(self) -> tuple[FloatArray, FloatArray, IntArray]:
@@ -116,61 +135,113 @@ class Surroundings:
                     owners += [number] * len(places[-1])
         return np.concatenate(places), np.array(widths), np.array(owners, np.int64)
 
-    def _near(self, number: int, place: shapely.Geometry, within_m: float) -> list[PlanWall]:
-        near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
-        return [self.walls[other] for other in near.tolist() if other != number]
+    @cached_property
+    def _turned_deg(self) -> FloatArray:
+        """Return the angle (n,) of each wall to the directions that most of their length has."""
+        way = np.array([wall.ends[1] - wall.ends[0] for wall in self.walls]).reshape(-1, 2)
+        turn = np.exp(4j * np.arctan2(way[:, 1], way[:, 0]))  # the same of both and across
+        main = (turn * np.hypot(*way.T)).sum()
+        return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
 
-    def _count_corners(self, number: int) -> tuple[int, int]:
+    def _near(self, number: int, place: shapely.Geometry, within_m: float) -> list[int]:
+        near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
+        return [other for other in near.tolist() if other != number]
+
+    def _count_corners(self, number: int) -> float:
         wall = self.walls[number]
         reach_m = BEHIND_M + wall.half_m
-        n_inner = n_outer = 0
+        n_inner = 0
         for end_m in wall.ends:
-            across = [
-                other
-                for other in self._near(number, shapely.Point(end_m), reach_m)
-                if abs(other.line.normal @ wall.line.normal) < _ACROSS
-            ]
-            comes_forward = any(wall.line.offset_m(o.ends).max() > reach_m for o in across)
-            n_inner += comes_forward
-            n_outer += bool(across) and not comes_forward
-        return n_inner, n_outer
+            near = [self.walls[i] for i in self._near(number, shapely.Point(end_m), reach_m)]
+            across = [o for o in near if abs(o.line.normal @ wall.line.normal) < _ACROSS]
+            n_inner += any(wall.line.offset_m(o.ends).max() > reach_m for o in across)
+        return float(n_inner)
 
-    def _find_hinge(self, number: int) -> tuple[float, float]:
-        """Return the distance of an end to a jamb, and the length beyond its opening's width."""
+    def _find_end_m(self, number: int) -> float:
+        apart_m = [
+            max(float(self._lines[other].distance(end)) - self.walls[other].half_m, 0.0)
+            for end in map(shapely.Point, self.walls[number].ends)
+            for other in self._near(number, end, _APART_M)
+        ]
+        return min(apart_m, default=math.inf)
+
+    def _find_hinge_m(self, number: int) -> float:
         wall = self.walls[number]
         places_m, width_m, owner = self._jambs
         of_others = owner != number
-        if not of_others.any():
-            return math.inf, math.inf
         apart_m = np.hypot(*(places_m[of_others] - wall.ends[:, None]).T).min(axis=1)
         fits_m = wall.length_m - width_m[of_others]
-        best = int((apart_m**2 + fits_m**2).argmin())
-        return float(apart_m[best]), float(fits_m[best])
+        return float(np.hypot(apart_m, fits_m).min(initial=math.inf))
 
-    def _find_behind_m(self, number: int) -> float:
+    def _find_before_m(self, number: int) -> float:
         wall = self.walls[number]
-        behind_m = math.inf
-        for other in self._near(number, shapely.LineString(wall.ends), _BEFORE_M[1]):
-            for face in other.members:
+        before_m = math.inf
+        for other in self._near(number, self._lines[number], _BEFORE_M[1]):
+            for face in self.walls[other].members:
                 if face.line.normal @ wall.line.normal < _ACROSS:
                     continue
                 off_m = -float(wall.line.offset_m(face.ends.mean(axis=0)))
                 low_m, high_m = np.sort(wall.line.along_m(face.ends)).tolist()
                 is_along = min(high_m, wall.high_m) > max(low_m, wall.low_m) - wall.length_m
                 if _BEFORE_M[0] < off_m < _BEFORE_M[1] and is_along:
-                    behind_m = min(behind_m, off_m)
-        return behind_m
+                    before_m = min(before_m, off_m)
+        return before_m
+
+    def _find_back_m(self, number: int) -> float:
+        wall = self.walls[number]
+        back_m = math.inf
+        for row in self._near(number, self._lines[number], _DEEP_M):
+            other = self.walls[row]
+            off_m = -float(wall.line.offset_m(other.ends).mean())
+            low_m, high_m = np.sort(wall.line.along_m(other.ends)).tolist()
+            shared_m = min(high_m, wall.high_m) - max(low_m, wall.low_m)
+            is_back = other.line.normal @ wall.line.normal < -_ACROSS
+            if is_back and 0 < off_m < _DEEP_M and shared_m > _ALONG * wall.length_m:
+                back_m = min(back_m, off_m)
+        return back_m
 
 
-def _overlooked_share(wall: PlanWall, counts: SurfaceCounts) -> float:
-    """Return on what share of its solid columns rays pass over what was seen of a wall."""
-    ends = counts.ends.sum(axis=2)
-    n_rows = ends.shape[1]
-    is_seen = ends[:, :, FACE] > _SEEN
-    top = np.where(is_seen.any(axis=1), n_rows - 1 - is_seen[:, ::-1].argmax(axis=1), -1)
-    passing = ends[:, :, BEYOND] + ends[:, :, DEEP]
-    over = np.where(np.arange(n_rows) > top[:, None], passing, 0.0).sum(axis=1)
-    is_solid = top >= 0
+@dataclass(frozen=True)
+class _Seen:
+    """What rays say of one surface, as the same attributes of `Features`."""
+
+    solid: float
+    witnesses: float
+    overlooked: float
+    deep: float
+
+    @classmethod
+    def of(cls, wall: PlanWall, counts: SurfaceCounts) -> "_Seen":
+        ends = counts.ends.sum(axis=2)
+        n_rows = ends.shape[1]
+        is_solid = _is_solid(wall, counts)
+        is_face = ends[:, :, FACE] > _SEEN
+        is_seen = is_solid & is_face.any(axis=1)
+        solid = float(is_solid.mean())
+        if not is_seen.any():
+            return cls(solid, 0.0, math.nan if n_rows == 1 else 0.0, 0.0)
+        ends, is_face = ends[is_seen], is_face[is_seen]
+        row = np.arange(n_rows)
+        lowest = is_face.argmax(axis=1)[:, None]
+        highest = (n_rows - 1 - is_face[:, ::-1].argmax(axis=1))[:, None]
+        is_between = (row >= lowest) & (row <= highest)
+        returned = (ends[:, :, :LOST] * is_between[:, :, None]).sum(axis=(0, 1))
+        is_over = (ends[:, :, BEYOND] + ends[:, :, DEEP] > _SEEN) & (row > highest)
+        return cls(
+            solid=solid,
+            witnesses=float(ends[:, :, FACE].sum(axis=1).mean()),
+            overlooked=math.nan if n_rows == 1 else float(is_over.any(axis=1).mean()),
+            deep=float(returned[DEEP] / returned.sum()),
+        )
+
+
+def _is_solid(wall: PlanWall, counts: SurfaceCounts) -> BoolArray:
+    """Return which columns of a wall are in no opening."""
+    is_solid = np.ones(len(counts.ends), bool)
     for gap in wall.openings:
         is_solid &= ~((counts.middles_m > gap.low_m) & (counts.middles_m < gap.high_m))
-    return float((over[is_solid] > _ONE).mean()) if is_solid.any() else 0.0
+    return is_solid
+
+
+def _or_inf(value: float) -> float:
+    return math.inf if math.isnan(value) else value

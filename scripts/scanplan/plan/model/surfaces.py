@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.plan.model import glass_views, things, wall_labels
-from scanplan.plan.model.surface_features import Surroundings
+from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
@@ -34,10 +34,7 @@ class LabelledSurfaces:
 
 
 def label_surfaces(
-    walls: Sequence[PlanWall],
-    rays: RaySet,
-    *,
-    max_opening_m: float,
+    walls: Sequence[PlanWall], rays: RaySet, *, max_opening_m: float
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -55,17 +52,17 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
         if part.right or not top_m < _WALL_TOP_M
     ]
-    of_part = [part for part, _ in parts]
-    shares = glass_views.find_glass_shares(of_part, rays).tolist()
-    around = Surroundings(of_part)
-    kinds = []
-    for number, (part, top_m) in enumerate(parts):
-        counts = wall_labels.count_wall(part, rays)
-        found = around.observe(number, counts, top_m, shares[number])
-        kinds.append(int(np.argmax(things.weigh_things(found, planar=rays.planar))))
+    found = observe_surfaces([part for part, _ in parts], rays)
+    kinds = [int(np.argmax(things.weigh_things(features))) for features in found]
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         tops_m=[top_m for _, top_m in kept],
-        leaves_m=[p.ends for p, kind in zip(of_part, kinds, strict=True) if kind == things.LEAF],
+        leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
     )
+
+
+def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:
+    """Return the features of parts of walls, whose openings are known."""
+    counts = [wall_labels.count_wall(part, rays) for part in parts]
+    return Surroundings(parts).observe(counts, glass_views.find_glass_shares(parts, rays))

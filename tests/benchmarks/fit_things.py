@@ -1,0 +1,192 @@
+"""The densities of what surfaces are sides of, fitted on floors of the tuning half.
+
+Surfaces of plans by labels are looked up in the truths of their drives: what most of their length
+is. Shares of each range of each feature are counted, rounded, and printed as the table that
+`plan/model/things.py` holds; by leaving out a kind of building at a time it is said what they are
+worth on others.
+"""
+
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import ablation
+import ablation_scores
+import numpy as np
+from ablation_switches import Function, Rule
+from realistic import scoring
+from realistic.floors import is_named
+
+from scanplan.lab.evaluation import face_cells
+from scanplan.lab.evaluation.scores import false_walls
+from scanplan.plan.model import things
+from scanplan.plan.model.surface_features import Features
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.project.settings import merge_settings
+from scanplan.rays.ray_set import RaySet
+from scanplan.stage import workers
+from scanplan.types import FloatArray, IntArray, Settings
+
+_OF_TRUTH = {
+    "right": things.WALL,
+    "leaf": things.LEAF,
+    "bridge": things.LEAF,
+    "shut_door": things.LEAF,
+    "furniture": things.FURNITURE,
+    "mirrored": things.OUTSIDE,
+}
+"""What is what by `false_walls.KINDS`; what is off, or nothing, teaches nothing."""
+_PROCESSES = 2
+_RIGHT_SHARE = 0.5  # of its length
+_OF_ALL = 2.0  # surfaces of all kinds together that each kind is taken to have besides its own
+_LEAST_SHARE = 0.005  # what never was may be
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """Surfaces of some drives: features (n, f) in the order of `things.DENSITIES`, and kinds."""
+
+    features: FloatArray
+    kind: IntArray
+    length_m: FloatArray
+
+
+def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
+    """Print the table, and what it is worth.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the realistic bench, with finished floors.
+    names : sequence of str
+        Floors, kinds or halves; the tuning half by default.
+    settings : dict
+        Default settings.
+    """
+    results = folder / "code/results"
+    wanted = list(names) or ["tuning"]
+    floors = {path: ablation.find_floor(path) for path in sorted(results.glob("*"))}
+    chosen = [
+        path
+        for path, floor in floors.items()
+        if floor.drive is not None and any(is_named(floor, word) for word in wanted)
+    ]
+    if not chosen:
+        sys.exit(f"fit_things: no simulated floor of {' '.join(wanted)} is finished in {results}")
+    by_labels = merge_settings(settings, {"advanced": {"plan": {"surfaces": "labels"}}})
+    with workers.open_pool(min(_PROCESSES, len(chosen))) as run:
+        found: list[Surfaces] = list(run(observe, [(path, by_labels) for path in chosen]))
+    everything = _join(found)
+    print(format_table(count_shares(everything), fit(everything)))
+    kinds = [floors[path].kind for path in chosen]
+    left_out = []
+    for kind in sorted(set(kinds)):
+        rest = _join([of for of, name in zip(found, kinds, strict=True) if name != kind])
+        own = _join([of for of, name in zip(found, kinds, strict=True) if name == kind])
+        left_out.append((own, weigh(own, count_shares(rest), fit(rest))))
+    print(_report(left_out))
+
+
+def observe(results: Path, settings: Settings) -> Surfaces:
+    """Return the surfaces of a plan by labels that are something in the truth."""
+    recorded = ablation_scores.find_truth(results)
+    assert recorded is not None
+    observed: list[tuple[Sequence[PlanWall], list[Features]]] = []
+
+    def record(function: Function) -> Function:
+        def asked(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:
+            observed.append((parts, function(parts, rays)))
+            return observed[-1][1]
+
+        return asked
+
+    rule = Rule({"plan.model.surfaces:observe_surfaces": record}, (), extracts=True)
+    with tempfile.TemporaryDirectory() as made:
+        ablation.make_plan(results, ablation.own_settings(results, settings), rule, Path(made))
+    placed = scoring.place_floor(results, recorded)
+    ((parts, features),) = observed
+    sides_m = [
+        placed.motion[:2, :2] @ (part.ends + across_m * part.line.normal).T
+        for part in parts
+        for across_m in ((part.half_m, -part.half_m) if part.right else (0.0,))
+    ]
+    owner = np.repeat(np.arange(len(parts)), [2 if part.right else 1 for part in parts])
+    cells = face_cells.cut_faces(np.array([m.T + placed.motion[:2, 3] for m in sides_m]))
+    verdict, _ = false_walls.judge_lines(
+        cells, false_walls.attribute_cells(placed.scene, cells), _RIGHT_SHARE
+    )
+    kind = np.full(len(parts), -1)
+    for name, of_thing in reversed(_OF_TRUTH.items()):
+        kind[owner[verdict == name]] = of_thing
+    taught = np.flatnonzero(kind >= 0).tolist()
+    rows = [[getattr(features[row], name) for name in things.DENSITIES] for row in taught]
+    return Surfaces(
+        features=np.array(rows, float).reshape(len(taught), len(things.DENSITIES)),
+        kind=kind[taught],
+        length_m=np.array([parts[row].length_m for row in taught]),
+    )
+
+
+def count_shares(of: Surfaces) -> FloatArray:
+    """Return the share (k,) of each kind of all surfaces."""
+    return np.bincount(of.kind, minlength=len(things.KINDS)) / len(of.kind)
+
+
+def fit(of: Surfaces) -> dict[str, FloatArray]:
+    """Return the shares (k, e + 1) of the ranges of each feature, of each kind."""
+    shares: dict[str, FloatArray] = {}
+    for column, (name, density) in enumerate(things.DENSITIES.items()):
+        value = of.features[:, column]
+        known = np.isfinite(value) | np.isinf(value)
+        place = np.searchsorted(density.edges, value[known], "right")
+        count = np.zeros((len(things.KINDS), len(density.edges) + 1))
+        np.add.at(count, (of.kind[known], place), 1.0)
+        usual = (count.sum(axis=0) + 1) / (count.sum() + count.shape[1])
+        count += _OF_ALL * usual
+        shares[name] = count / count.sum(axis=1, keepdims=True)
+    return shares
+
+
+def weigh(of: Surfaces, shares: FloatArray, densities: Mapping[str, FloatArray]) -> IntArray:
+    """Return the likeliest kind (n,) of each surface."""
+    likely = np.tile(np.log(shares), (len(of.kind), 1))
+    for column, (name, density) in enumerate(things.DENSITIES.items()):
+        value = of.features[:, column]
+        place = np.searchsorted(density.edges, value, "right")
+        place = np.minimum(place, len(density.edges))
+        likely += np.where(np.isnan(value)[:, None], 0.0, np.log(densities[name].T[place]))
+    return likely.argmax(axis=1)
+
+
+def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
+    """Return shares and densities as the source text of `things`."""
+    lines = [f"SHARES = ({', '.join(f'{share:.2g}' for share in shares)})"]
+    for name, density in things.DENSITIES.items():
+        lines.append(f'    "{name}": Density(')
+        lines.append(f"        {density.edges},")
+        rounded = np.maximum(np.round(densities[name], 2), _LEAST_SHARE).tolist()
+        rows = [f"({', '.join(f'{share:.3g}' for share in of_kind)})" for of_kind in rounded]
+        lines.append(f"        ({', '.join(rows)}),\n    ),")
+    return "\n".join(lines)
+
+
+def _report(left_out: Sequence[tuple[Surfaces, IntArray]]) -> str:
+    """Return how many metres of each kind are taken for what, by kinds of buildings left out."""
+    metres = np.zeros((len(things.KINDS), len(things.KINDS)))
+    for own, taken in left_out:
+        np.add.at(metres, (own.kind, taken), own.length_m)
+    lines = ["metres of what (rows) taken for what, of kinds of buildings that were left out:"]
+    lines.append(" " * 10 + "".join(f"{name:>10s}" for name in things.KINDS))
+    for name, row in zip(things.KINDS, metres.tolist(), strict=True):
+        lines.append(f"{name:10s}" + "".join(f"{length_m:10.0f}" for length_m in row))
+    return "\n".join(lines)
+
+
+def _join(found: Sequence[Surfaces]) -> Surfaces:
+    return Surfaces(
+        features=np.concatenate([of.features for of in found]),
+        kind=np.concatenate([of.kind for of in found]),
+        length_m=np.concatenate([of.length_m for of in found]),
+    )
