@@ -16,11 +16,10 @@ import ablation
 import ablation_scores
 import numpy as np
 from ablation_switches import Function, Rule
-from realistic import scoring
 from realistic.floors import is_named
 
 from scanplan.lab.evaluation import face_cells
-from scanplan.lab.evaluation.scores import false_walls
+from scanplan.lab.evaluation.scores import false_walls, score_files
 from scanplan.plan.model import things
 from scanplan.plan.model.surface_features import Features
 from scanplan.plan.plan_wall import PlanWall
@@ -105,7 +104,7 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     rule = Rule({"plan.model.surfaces:observe_surfaces": record}, (), extracts=True)
     with tempfile.TemporaryDirectory() as made:
         ablation.make_plan(results, ablation.own_settings(results, settings), rule, Path(made))
-    placed = scoring.place_floor(results, recorded)
+    placed = score_files.place_results(results, recorded.truth, recorded.true_poses)
     ((parts, features),) = observed
     sides_m = [
         placed.motion[:2, :2] @ (part.ends + across_m * part.line.normal).T
@@ -162,7 +161,7 @@ def weigh(of: Surfaces, shares: FloatArray, densities: Mapping[str, FloatArray])
 
 def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
     """Return shares and densities as the source text of `things`."""
-    lines = [f"SHARES = ({', '.join(f'{share:.2g}' for share in shares)})"]
+    lines = [f"SHARES = ({', '.join(f'{share:.2f}' for share in shares)})"]
     for name, density in things.DENSITIES.items():
         lines.append(f'    "{name}": Density(')
         lines.append(f"        {density.edges},")

@@ -150,7 +150,7 @@ def enumerate_ways(ends, *, is_outer):
     likely = line_labels.weigh_columns(SurfaceCounts(0.0, ends), labels).tolist()
     own = list(zip(labels.kind.tolist(), labels.log_prior.tolist(), strict=True))
     known = {
-        "enter": priors.log_enter().tolist(),
+        "ends": priors.log_ends(is_outer=is_outer).tolist(),
         "change": priors.log_change(is_outer=is_outer).tolist(),
         "length": priors.log_lengths(len(ends)).tolist(),
     }
@@ -208,9 +208,9 @@ class TestPriors:
         assert (labels.states.sum(axis=2) == 1).all()
 
     @pytest.mark.parametrize("is_outer", [False, True])
-    def test_something_follows_each_kind_and_something_begins(self, is_outer):
+    def test_something_follows_each_kind_and_is_at_the_ends(self, is_outer):
         np.testing.assert_allclose(np.exp(priors.log_change(is_outer=is_outer)).sum(axis=1), 1)
-        assert np.exp(priors.log_enter()).sum() == pytest.approx(1)
+        assert np.exp(priors.log_ends(is_outer=is_outer)).sum() == pytest.approx(1)
 
     def test_lengths_of_a_kind_are_likely_one_in_all(self):
         """Columns of 5 cm sum a density of the length to within some percent."""
@@ -222,7 +222,9 @@ class TestPriors:
         assert np.ptp(weights) == pytest.approx(0)
 
     @pytest.mark.parametrize(
-        ("end", "state"), [(FACE, 0), (SHALLOW, 2), (BEYOND, 1)], ids=["wall", "recess", "free"]
+        ("end", "state"),
+        [(FACE, 0), (SHALLOW, 2), (BEYOND, 4), (LOST, 1)],
+        ids=["wall", "recess", "over a low thing", "free"],
     )
     def test_each_end_of_rays_speaks_for_its_state(self, end, state):
         ends = np.zeros((1, 1, 2, N_ENDS))

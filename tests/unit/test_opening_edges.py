@@ -31,7 +31,7 @@ def beside(low_m, high_m, scan=0, z_m=1.0):
 @pytest.mark.parametrize(
     ("kind", "drawn"),
     [
-        *(("door", "door"), ("shut", "door"), ("open", "door")),
+        *(("door", "door"), ("shut", "door"), ("open", "gap")),
         *(("window", "window"), ("glass", "glass")),
     ],
 )
@@ -40,6 +40,11 @@ def test_a_stretch_that_is_no_wall_is_an_opening_of_its_kind(kind, drawn):
     assert is_opening(stretch)
     opening = measure_opening(seen(), stretch)
     assert (opening.kind, opening.p_kind, opening.state) == (drawn, 0.9, "open")
+
+
+def test_what_is_open_to_any_height_and_as_wide_as_a_passage_is_one():
+    opening = measure_opening(seen(), replace(DOOR, kind="open", high_m=DOOR.low_m + 1.3))
+    assert opening.type_name(max_door_m=1.2) == "passage"
 
 
 @pytest.mark.parametrize("kind", ["solid", "low"])

@@ -126,11 +126,20 @@ class TestLowParts:
         np.testing.assert_allclose(spans_x([one, two]), [(0, 3), (3, 5)], atol=0.06)
         assert np.isnan(one_top_m) and two_top_m == pytest.approx(1.1)
 
-    def test_it_is_left_out_where_one_side_alone_was_seen(self, monkeypatch):
-        monkeypatch.setattr(things, "weigh_things", lambda _: np.eye(4)[things.WALL])
+    def test_where_one_side_alone_was_seen_it_is_asked_what_it_is(self, monkeypatch):
+        """Of the part that rays pass over it is told; how high it is says nothing of a wall."""
+        asked = []
+
+        def keep(features):
+            asked.append(features)
+            return things.WALL
+
+        monkeypatch.setattr(things, "decide_thing", keep)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
         found = label_surfaces([wall], looked, max_opening_m=MAX_OPENING_M)
-        np.testing.assert_allclose(spans_x(found.walls), [(0, 3)], atol=0.06)
+        np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)
+        assert [features.overlooked for features in asked] == [0, pytest.approx(1, abs=0.05)]
+        assert np.isnan(found.tops_m).all()
 
     def test_it_stays_where_both_sides_were_seen(self):
         scans = self.look() + self.look(SOUTH_M, -0.2)

@@ -101,6 +101,7 @@ class _Chain:
         self.cuts = _find_cuts(likely)
         self._labels = labels
         self._change = priors.log_change(is_outer=is_outer)
+        self._ends = priors.log_ends(is_outer=is_outer)
         self._score = np.vstack([np.zeros(likely.shape[1]), np.cumsum(likely, axis=0)])[self.cuts]
         self._n = len(self.cuts) - 1
         self._rows = [np.flatnonzero(labels.kind == kind) for kind in range(_N_KINDS)]
@@ -121,10 +122,11 @@ class _Chain:
         """Return what enters each kind at each cut, and what ended in each there, (b, k)."""
         entry = np.full((self._n + 1, _N_KINDS), -np.inf)
         ended = np.full((self._n + 1, _N_KINDS), -np.inf)
-        entry[0] = priors.log_enter()
+        entry[0] = self._ends
         for end in range(1, self._n + 1):
             ended[end] = add(self._inner[end - 1] + entry[:end], axis=0)
             entry[end] = add(ended[end][:, None] + self._change, axis=0)
+        ended[self._n] += self._ends
         return entry, ended
 
     def best_path(self) -> list[tuple[int, int, int]]:
@@ -145,7 +147,7 @@ class _Chain:
         """Return the probability (n, k) of each kind between neighbouring cuts."""
         entry, ended = self._forward(np.logaddexp.reduce)
         whole = np.logaddexp.reduce(ended[self._n])
-        after = np.zeros(_N_KINDS)
+        after = self._ends
         entered = np.full((self._n + 1, _N_KINDS), -np.inf)
         change = np.zeros((self._n + 1, _N_KINDS))
         for end in range(self._n, 0, -1):

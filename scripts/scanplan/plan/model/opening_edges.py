@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from scanplan.plan.model.line_labels import Stretch
-from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, LOW_PERCENT
 from scanplan.rays.face_observation import FaceObservation
@@ -14,6 +14,7 @@ from scanplan.types import FloatArray, IntArray
 
 _KINDS = {"door": "door", "shut": "door", "open": "door", "window": "window", "glass": "glass"}
 """Kind of a stretch to that of an opening."""
+_PASSAGE_M = 1.2  # what is open to any height and narrower is between two things, hardly a door
 _EDGE_M = 0.12  # a jamb is this near to where labels change: two columns, and what poses err by
 _ROW_M = 0.15  # a sill or lintel is this near to the edge of its row, half of it and noise
 _LOWEST_PERCENT = 5  # of returns above a lintel: lower ones may be of what hangs there
@@ -30,6 +31,7 @@ def measure_opening(wall: PlanWall, stretch: Stretch) -> Opening:
     high_m = _find_jamb_m(wall, stretch, stretch.high_m, -1)
     sill_m, lintel_m = _find_heights_m(wall, stretch)
     free = [seen.free_between(*span_m) for seen, span_m in _faces_at(wall, low_m, high_m)]
+    is_slot = stretch.kind == "open" and high_m - low_m < _PASSAGE_M
     return Opening(
         low_m=low_m,
         high_m=high_m,
@@ -38,7 +40,7 @@ def measure_opening(wall: PlanWall, stretch: Stretch) -> Opening:
         sill_m=sill_m,
         lintel_m=lintel_m,
         below_wall=bool(np.isfinite(lintel_m)),
-        kind=_KINDS[stretch.kind],
+        kind=GAP if is_slot else _KINDS[stretch.kind],
         p_kind=stretch.p,
     )
 

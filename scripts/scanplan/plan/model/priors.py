@@ -15,38 +15,46 @@ KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
 """What a stretch is: wall; a wall that ends below the ceiling; nothing; a pane down to the floor; a
 way under a lintel; a hole or pane above a sill; a shut leaf behind the face, under a lintel."""
 SOLID, LOW, OPEN, GLASS, DOOR, WINDOW, SHUT = range(len(KINDS))
-_WALL, _FREE, _RECESS, _PANE = range(4)
+_WALL, _FREE, _RECESS, _PANE, _OVER = range(5)
 _ENDS = np.array(
     (
         ((0.89, 0.02, 0.01, 0.02, 0.06), (0.87, 0.03, 0.01, 0.02, 0.07)),
         ((0.03, 0.04, 0.09, 0.56, 0.28), (0.03, 0.04, 0.09, 0.56, 0.28)),
         ((0.10, 0.77, 0.03, 0.03, 0.07), (0.10, 0.77, 0.03, 0.03, 0.07)),
         ((0.25, 0.10, 0.25, 0.27, 0.13), (0.04, 0.03, 0.09, 0.56, 0.28)),
+        ((0.03, 0.06, 0.20, 0.65, 0.06), (0.03, 0.06, 0.20, 0.65, 0.06)),
     )
 )
-# of a wall, a hole, a recess and a pane, of rays that come square and others: how many end at the
-# face, a little behind, in the wall's depth, beyond, nowhere. A pane answers square rays alone
-# (Foster, Sun, Park and Kuipers 2013, VisAGGE); what passes it is lost as often as through a hole
+# of a wall, a hole, a recess, a pane and what is over a low thing, of rays that come square and
+# others: how many end at the face, a little behind, in the wall's depth, beyond, nowhere. A pane
+# answers square rays alone (Foster, Sun, Park and Kuipers 2013, VisAGGE); what passes it is lost as
+# often as through a hole; over a low thing rays end at the next wall of the room
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
 _WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
 _LOW_M, _GLASS_M, _LINTEL_M = (0.5, 2.3), (1.9, 2.7), (1.9, 2.7)
 _SILL_M, _WINDOW_TOP_M, _LEAST_WINDOW = (0.3, 1.7), (1.5, 3.1), 2
 # from where to where edges are looked for, above the floor; rows of a window at least
 _MEAN_M = {SOLID: 3.0, LOW: 2.0, OPEN: 1.5, GLASS: 2.5}
-"""Mean length of what has no usual one."""
+"""Mean length of what has no usual one; of panes beyond the least."""
+_PANE_M = 0.4  # panes to the floor are no narrower: slots are joints of things
 _LEAF_M = (0.9, 0.1)  # usual width of a door of one leaf (DIN 18101: 0.75 to 1.0), its deviation
+_SASH_M = (1.2, 0.3)  # usual width of a window, and the deviation of its logarithm
 _FROM_SOLID = {
-    False: {DOOR: 0.72, WINDOW: 0.08, SHUT: 0.1, OPEN: 0.06, GLASS: 0.03, LOW: 0.01},
-    True: {DOOR: 0.12, WINDOW: 0.72, SHUT: 0.06, OPEN: 0.02, GLASS: 0.07, LOW: 0.01},
+    False: {DOOR: 0.74, WINDOW: 0.08, SHUT: 0.1, OPEN: 0.06, GLASS: 0.01, LOW: 0.01},
+    True: {DOOR: 0.14, WINDOW: 0.69, SHUT: 0.06, OPEN: 0.08, GLASS: 0.02, LOW: 0.01},
 }
 """What interrupts a wall that was seen from both sides, and one that may be a facade."""
 _FROM_OTHERS: dict[int, dict[int, float]] = {
-    LOW: {SOLID: 0.8, OPEN: 0.2},
+    LOW: {SOLID: 0.9, OPEN: 0.1},
     OPEN: {SOLID: 0.87, GLASS: 0.1, LOW: 0.03},
     GLASS: {SOLID: 0.6, DOOR: 0.2, OPEN: 0.2},
     DOOR: {SOLID: 0.9, GLASS: 0.1},
     WINDOW: {SOLID: 1.0},
     SHUT: {SOLID: 1.0},
+}
+_AT_ENDS = {
+    False: {SOLID: 0.74, LOW: 0.03, OPEN: 0.1, GLASS: 0.03, DOOR: 0.07, SHUT: 0.02, WINDOW: 0.01},
+    True: {SOLID: 0.76, LOW: 0.06, OPEN: 0.08, GLASS: 0.03, DOOR: 0.03, SHUT: 0.01, WINDOW: 0.03},
 }
 
 
@@ -60,8 +68,8 @@ class Labels:
         Row of `KINDS`.
     sill_m, lintel_m : (l,) float64
         Between which heights above the floor it is what it is; NaN: from the floor, to any height.
-    states : (l, r, 4) float64
-        1 for the state of each row of height: wall, free, recess or pane.
+    states : (l, r, 5) float64
+        1 for the state of each row of height: wall, free, recess, pane, or over a low thing.
     log_prior : (l,) float64
         Of its heights, given its kind.
     """
@@ -74,7 +82,7 @@ class Labels:
 
 
 def weigh_states(ends: FloatArray) -> FloatArray:
-    """Return (c, r, 4): how likely each state makes what is counted of each cell, log.
+    """Return (c, r, 5): how likely each state makes what is counted of each cell, log.
 
     `ends` (c, r, 2, 5) are those of `surface_counts.SurfaceCounts`.
     """
@@ -96,8 +104,7 @@ def list_labels(n_rows: int) -> Labels:
     kind, low, high, state = np.array(spans).T
     row = np.arange(n_rows)
     is_within = (row >= low[:, None]) & (row < high[:, None])
-    # above what is low there is nothing, around all else wall
-    around = np.where(kind == LOW, _FREE, _WALL)
+    around = np.where(kind == LOW, _OVER, _WALL)
     state_of_row = np.where(is_within, state[:, None], around[:, None])
     count = np.bincount(kind, minlength=len(KINDS))
     edges_m = ROWS_M if n_rows > 1 else np.full(2, np.nan)
@@ -135,10 +142,12 @@ def log_lengths(longest: int) -> FloatArray:
     out = np.zeros((len(KINDS), longest))
     for kind, mean_m in _MEAN_M.items():
         out[kind] = -length_m / mean_m + np.log(COLUMN_M / mean_m)
+    out[GLASS] = np.where(length_m < _PANE_M, -np.inf, out[GLASS] + _PANE_M / _MEAN_M[GLASS])
     usual = _normal(length_m, *_LEAF_M)
     out[DOOR] = _log(0.75 * usual + 0.25 * _log_uniform(length_m, 0.55, 2.6))
     out[SHUT] = _log(0.9 * usual + 0.1 * _log_uniform(length_m, 0.6, 2.0))
-    out[WINDOW] = _log(_log_uniform(length_m, 0.4, 4.0))
+    sash = _normal(np.log(length_m), np.log(_SASH_M[0]), _SASH_M[1]) / length_m
+    out[WINDOW] = _log(0.8 * sash + 0.2 * _log_uniform(length_m, 0.4, 6.0))
     return out
 
 
@@ -148,9 +157,12 @@ def log_change(*, is_outer: bool) -> FloatArray:
     return np.stack([_log_shares(shares[kind]) for kind in range(len(KINDS))])
 
 
-def log_enter() -> FloatArray:
-    """Return (k,): what a line begins with, log."""
-    return _log_shares({SOLID: 0.8, LOW: 0.03, OPEN: 0.12, GLASS: 0.05})
+def log_ends(*, is_outer: bool) -> FloatArray:
+    """Return (k,): what a line begins and ends with, log.
+
+    Of what was seen from one side alone more is low: most furniture is such.
+    """
+    return _log_shares(_AT_ENDS[is_outer])
 
 
 def _normal(x: FloatArray, mean: float, sigma: float) -> FloatArray:

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, SurfaceCounts
+from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -31,7 +32,7 @@ class Features:
     length_m, thickness_m : float
         Thickness inf of what was seen from one side.
     solid : float
-        Share of its length that is no opening.
+        Share of its length that is no door, window or pane.
     witnesses : float
         How many places saw it, in the mean of its columns and of that of all surfaces.
     overlooked : float
@@ -236,9 +237,9 @@ class _Seen:
 
 
 def _is_solid(wall: PlanWall, counts: SurfaceCounts) -> BoolArray:
-    """Return which columns of a wall are in no opening."""
+    """Return which columns of a wall are in no door, window or pane; slots are between things."""
     is_solid = np.ones(len(counts.ends), bool)
-    for gap in wall.openings:
+    for gap in [opening for opening in wall.openings if opening.kind != GAP]:
         is_solid &= ~((counts.middles_m > gap.low_m) & (counts.middles_m < gap.high_m))
     return is_solid
 

@@ -1,17 +1,14 @@
 """The surfaces of a plan by the model: walls with what their lines' labels show, and leaves."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from scanplan.plan.model import glass_views, things, wall_labels
 from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
-
-_WALL_TOP_M = 2.0  # what ends lower, and has no other side, is a side of something
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,14 +47,14 @@ def label_surfaces(
         (part, top_m)
         for wall in walls
         for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
-        if part.right or not top_m < _WALL_TOP_M
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = [int(np.argmax(things.weigh_things(features))) for features in found]
+    kinds = [things.decide_thing(features) for features in found]
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
-        tops_m=[top_m for _, top_m in kept],
+        # that nothing was seen above what was seen from one side alone shows no end
+        tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
         leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
     )
 

@@ -104,8 +104,15 @@ def _clip_face(
     wall: PlanWall, face: FaceInterval, low_m: float, high_m: float
 ) -> list[FaceInterval]:
     begin_m, end_m = np.sort(face.line.along_m(wall.line.at(np.array([low_m, high_m]))))
-    low_m, high_m = max(face.low_m, float(begin_m)), min(face.high_m, float(end_m))
-    return [replace(face, low_m=low_m, high_m=high_m)] if high_m - low_m >= COLUMN_M else []
+    return _part_face(face, max(face.low_m, float(begin_m)), min(face.high_m, float(end_m)))
+
+
+def _part_face(face: FaceInterval, low_m: float, high_m: float) -> list[FaceInterval]:
+    """Return a part of a face, if it is as long as a column and some point shows it."""
+    if high_m - low_m < COLUMN_M:
+        return []
+    part = replace(face, low_m=low_m, high_m=high_m)
+    return [part] if part.n_points else []
 
 
 def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWall:
@@ -140,11 +147,7 @@ def _cut_face(wall: PlanWall, face: FaceInterval, ways: Sequence[Opening]) -> li
     if not len(taken_m):
         return [face]
     rest_m = find_gaps(taken_m, face.low_m, face.high_m)
-    return [
-        replace(face, low_m=low_m, high_m=high_m)
-        for low_m, high_m in rest_m.tolist()
-        if high_m - low_m >= COLUMN_M
-    ]
+    return [part for span_m in rest_m.tolist() for part in _part_face(face, *span_m)]
 
 
 def _list_hidden(wall: PlanWall, openings: Sequence[Opening]) -> list[Opening]:

@@ -1,0 +1,69 @@
+"""Densities of toy surfaces, counted on paper."""
+
+import ast
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
+
+import fit_things
+
+from scanplan.plan.model import things
+
+NAN = float("nan")
+
+
+def surfaces(kinds, **values):
+    """Return surfaces of which nothing is known but the features that are named."""
+    features = np.full((len(kinds), len(things.DENSITIES)), NAN)
+    for name, of_each in values.items():
+        features[:, list(things.DENSITIES).index(name)] = of_each
+    return fit_things.Surfaces(features, np.array(kinds), np.ones(len(kinds)))
+
+
+LEARNT = surfaces([things.WALL] * 6 + [things.LEAF] * 2, n_inner=[2, 2, 2, 2, 1, 0, 0, 0])
+
+
+def test_kinds_have_their_shares():
+    assert fit_things.count_shares(LEARNT).tolist() == [0.75, 0.25, 0, 0]
+
+
+def test_ranges_have_the_shares_that_were_counted_and_a_little_of_all():
+    """Of eight three end at no corner, one at one, four at two; eleven with one more of each.
+
+    Each kind has two of all besides its own: a wall one, one and four of six.
+    """
+    usual = np.array([4, 2, 5]) / 11
+    found = fit_things.fit(LEARNT)["n_inner"]
+    np.testing.assert_allclose(found[things.WALL], (np.array([1, 1, 4]) + 2 * usual) / 8)
+    np.testing.assert_allclose(found[things.LEAF], (np.array([2, 0, 0]) + 2 * usual) / 4)
+    np.testing.assert_allclose(found[things.OUTSIDE], usual)
+
+
+def test_what_was_never_seen_leaves_all_ranges_alike():
+    np.testing.assert_allclose(fit_things.fit(LEARNT)["overlooked"], 1 / 3)
+
+
+def test_surfaces_are_what_they_are_likeliest_to_be():
+    shares = np.array([0.7, 0.1, 0.1, 0.1])
+    asked = surfaces([things.WALL] * 3, n_inner=[2, 0, NAN])
+    taken = fit_things.weigh(asked, shares, fit_things.fit(LEARNT))
+    assert taken.tolist() == [things.WALL, things.WALL, things.WALL]
+    taken = fit_things.weigh(asked, np.full(4, 0.25), fit_things.fit(LEARNT))
+    assert taken[:2].tolist() == [things.WALL, things.LEAF]
+
+
+def test_the_table_reads_as_that_of_the_package():
+    """What was fitted is set in by hand: it is Python, and has a share for all ranges."""
+    text = fit_things.format_table(fit_things.count_shares(LEARNT), fit_things.fit(LEARNT))
+    first, rest = text.split("\n", 1)
+    assert ast.literal_eval(first.removeprefix("SHARES = ")) == (0.75, 0.25, 0, 0)
+    # what is called in the text is a pair to read
+    read = ast.literal_eval("{" + rest.replace("Density(", "(") + "}")
+    assert list(read) == list(things.DENSITIES)
+    for name, (edges, shares) in read.items():
+        assert edges == things.DENSITIES[name].edges
+        assert np.shape(shares) == (len(things.KINDS), len(edges) + 1)
+        assert np.min(shares) >= 0.005
