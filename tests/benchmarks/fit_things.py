@@ -40,6 +40,7 @@ _OF_TRUTH = {
 _PROCESSES = 2
 _RIGHT_SHARE = 0.5  # of its length
 _OF_ALL = 2.0  # surfaces of all kinds together that each kind is taken to have besides its own
+_TEMPERS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4)
 _LEAST_SHARE = 0.005  # what never was may be
 
 
@@ -80,11 +81,11 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     everything = _join(found)
     print(format_table(count_shares(everything), fit(everything)))
     kinds = [floors[path].kind for path in chosen]
-    left_out = []
+    left_out: list[tuple[Surfaces, FloatArray, FloatArray]] = []
     for kind in sorted(set(kinds)):
         rest = _join([of for of, name in zip(found, kinds, strict=True) if name != kind])
         own = _join([of for of, name in zip(found, kinds, strict=True) if name == kind])
-        left_out.append((own, weigh(own, count_shares(rest), fit(rest))))
+        left_out.append((own, weigh(own, fit(rest)), count_shares(rest)))
     print(_report(left_out))
 
 
@@ -148,15 +149,21 @@ def fit(of: Surfaces) -> dict[str, FloatArray]:
     return shares
 
 
-def weigh(of: Surfaces, shares: FloatArray, densities: Mapping[str, FloatArray]) -> IntArray:
-    """Return the likeliest kind (n,) of each surface."""
-    likely = np.tile(np.log(shares), (len(of.kind), 1))
+def weigh(of: Surfaces, densities: Mapping[str, FloatArray]) -> FloatArray:
+    """Return how likely each kind makes what is known of each surface, log: (n, k)."""
+    likely = np.zeros((len(of.kind), len(things.KINDS)))
     for column, (name, density) in enumerate(things.DENSITIES.items()):
         value = of.features[:, column]
         place = np.searchsorted(density.edges, value, "right")
         place = np.minimum(place, len(density.edges))
         likely += np.where(np.isnan(value)[:, None], 0.0, np.log(densities[name].T[place]))
-    return likely.argmax(axis=1)
+    return likely
+
+
+def decide(likely: FloatArray, shares: FloatArray, temper: float) -> FloatArray:
+    """Return the probability of each kind, log: (n, k), if so much of each answer counts."""
+    weight = np.log(shares) + temper * likely
+    return weight - np.logaddexp.reduce(weight, axis=1, keepdims=True)
 
 
 def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
@@ -171,12 +178,24 @@ def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str
     return "\n".join(lines)
 
 
-def _report(left_out: Sequence[tuple[Surfaces, IntArray]]) -> str:
-    """Return how many metres of each kind are taken for what, by kinds of buildings left out."""
+def _report(left_out: Sequence[tuple[Surfaces, FloatArray, FloatArray]]) -> str:
+    """Return what the densities are worth on kinds of buildings that were left out.
+
+    How improbable what is so is by how much of an answer counts, and how many metres of each kind
+    are taken for what.
+    """
+    lines = ["minus log probability of what is so, mean, by temper:"]
+    for temper in _TEMPERS:
+        missed = [
+            -decide(likely, shares, temper)[np.arange(len(own.kind)), own.kind]
+            for own, likely, shares in left_out
+        ]
+        lines.append(f"{temper:4.1f} {np.concatenate(missed).mean():.3f}")
     metres = np.zeros((len(things.KINDS), len(things.KINDS)))
-    for own, taken in left_out:
+    for own, likely, shares in left_out:
+        taken = decide(likely, shares, things.TEMPER).argmax(axis=1)
         np.add.at(metres, (own.kind, taken), own.length_m)
-    lines = ["metres of what (rows) taken for what, of kinds of buildings that were left out:"]
+    lines.append("metres of what (rows) taken for what, of kinds of buildings that were left out:")
     lines.append(" " * 10 + "".join(f"{name:>10s}" for name in things.KINDS))
     for name, row in zip(things.KINDS, metres.tolist(), strict=True):
         lines.append(f"{name:10s}" + "".join(f"{length_m:10.0f}" for length_m in row))

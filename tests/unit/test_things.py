@@ -73,7 +73,7 @@ TEXTBOOK = [
 @pytest.mark.parametrize(("found", "kind"), TEXTBOOK)
 def test_each_is_what_it_is(found, kind):
     share = weigh_things(found)
-    assert share.argmax() == kind and share[kind] > 0.8
+    assert share.argmax() == kind and share[kind] > 0.7
 
 
 @pytest.mark.parametrize(("found", "kind"), TEXTBOOK)

@@ -132,9 +132,9 @@ class TestLowParts:
 
         def keep(features):
             asked.append(features)
-            return things.WALL
+            return np.eye(4)[things.WALL]
 
-        monkeypatch.setattr(things, "decide_thing", keep)
+        monkeypatch.setattr(things, "weigh_things", keep)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
         found = label_surfaces([wall], looked, max_opening_m=MAX_OPENING_M)
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)

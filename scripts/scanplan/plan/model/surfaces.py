@@ -49,7 +49,7 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = [things.decide_thing(features) for features in found]
+    kinds = [int(things.weigh_things(features).argmax()) for features in found]
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
