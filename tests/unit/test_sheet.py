@@ -507,6 +507,33 @@ def test_a_text_is_broken_between_words_once():
     assert cut.endswith("…")
 
 
+@given(st.text(st.sampled_from("AVTW.,i '’\n-"), max_size=40), st.floats(0.1, 30))
+def test_no_letter_more_would_have_fitted(text, width_mm):
+    def is_short(words):
+        return lettering.measure_width_mm(words, 1.8) <= width_mm
+
+    text = lettering.clean_text(text)
+    words = text.split()
+    fitting = [n for n in range(1, len(words) + 1) if is_short(" ".join(words[:n]))]
+    first = " ".join(words[: max(fitting, default=0)])
+    rest = text.removeprefix(first).strip()
+    kept = [n for n in range(len(rest) + 1) if is_short(f"{rest[:n]}…")]
+    cut = rest if is_short(rest) else f"{rest[: max(kept, default=0)].rstrip()}…"
+    assert lettering.wrap_text(text, 1.8, width_mm) == ([first] if first else []) + (
+        [cut] if rest or not first else []
+    )
+
+
+@pytest.mark.parametrize("text", ["W" * 100_000, "a word " * 20_000])
+def test_of_an_endless_text_only_what_fits_is_measured(monkeypatch, text):
+    measured = []
+    monkeypatch.setattr(
+        lettering, "measure_width_mm", lambda text, _: measured.append(text) or len(text)
+    )
+    assert all(len(line) <= 40 for line in lettering.wrap_text(text, 1.8, 40.0))
+    assert sum(map(len, measured)) < 2_000
+
+
 def test_every_style_has_a_layer_and_walls_are_drawn_over_rooms():
     assert {style.layer for style in STYLES.values()} <= set(LAYERS)
     order = list(STYLES)

@@ -19,12 +19,12 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import overlays
 from scanplan.geometry.bare_parts import draw_way
 from scanplan.geometry.bitmap import Grid, fill_polygons
-from scanplan.geometry.tolerances import SHORTEST_M, SMALLEST_M2
-from scanplan.types import Array, BoolArray, FloatArray, IntArray
+from scanplan.geometry.parted_ground import FURNITURE_M2, part_enough
+from scanplan.geometry.tolerances import SHORTEST_M
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
 _NARROWER_UNVISITED = 0.8  # where nobody went on no way says that both sides are one room
-FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most
 
 
 def find_narrow_places(
@@ -92,8 +92,7 @@ def find_narrow_places(
         if not is_passed or _widens_on_both_sides(near, line):
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
-    visits = np.asarray(shapely.points(visited_m))
-    return _part_enough(filled, lines, visits, min_area_m2, sliver_m=4 * cell_m)
+    return part_enough(filled, lines, visited_m, min_area_m2, sliver_m=4 * cell_m)
 
 
 def _choose_gaps(
@@ -304,53 +303,3 @@ def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
     beside = [_line_across(ground, place_m, way) for place_m in places_m]
     widest_m = max((_length_m(other) for other in beside if other is not None), default=0.0)
     return width_m < _NARROWER * widest_m
-
-
-def _part_enough(
-    ground: BaseGeometry,
-    lines: Sequence[FloatArray],
-    visited: Array,
-    min_area_m2: float,
-    *,
-    sliver_m: float,
-) -> list[FloatArray]:
-    """Return the lines that, all together, part ground into large enough parts.
-
-    A part that is too small goes with one beside it: if nobody was in it, first with another that
-    nobody was in. Parts narrower than twice a sliver count for nothing.
-    """
-    chosen = list(lines)
-    while True:
-        cuts = [overlays.buffer_shapes(_lengthen(line), SHORTEST_M) for line in chosen]
-        parts = shapely.get_parts(overlays.subtract_areas(ground, overlays.unite_areas(cuts)))
-        is_visited = np.array([_is_visited(part, visited) for part in parts], bool)
-        is_small = shapely.area(parts) < np.where(is_visited, min_area_m2, FURNITURE_M2)
-        is_wide = ~shapely.is_empty(overlays.buffer_shapes(parts, -sliver_m, quad_segs=8))
-        beside = [_parts_beside(line, parts) for line in chosen]
-        cut_off = [
-            i
-            for i, rows in enumerate(beside)
-            if len(rows) > 1 and (is_wide[rows].sum() < 2 or is_small[rows[is_wide[rows]]].any())
-        ]
-        if not cut_off:
-            return [line for line, rows in zip(chosen, beside, strict=True) if len(rows) > 1]
-        # one at a time: what is small joins what is behind it, and another line parts both
-        inner = [i for i in cut_off if not is_visited[beside[i]].any()]
-        chosen.pop(max(inner or cut_off, key=lambda i: _length_m(chosen[i])))
-
-
-def _parts_beside(line: FloatArray, parts: Array) -> IntArray:
-    """Return the rows of the parts along a line that was cut; not of what is beyond its ends."""
-    beside = overlays.buffer_shapes(LineString(line), 2 * SHORTEST_M, cap_style="flat")
-    return np.flatnonzero(shapely.area(overlays.intersect_areas(parts, beside)) > SMALLEST_M2)
-
-
-def _is_visited(part: Polygon, visited: Array) -> bool:
-    shapely.prepare(part)
-    return bool(shapely.contains(part, visited).any())
-
-
-def _lengthen(line: FloatArray) -> LineString:
-    """Return a line that goes on a little beyond both ends."""
-    beyond = (line[1] - line[0]) / 10
-    return LineString([line[0] - beyond, line[1] + beyond])

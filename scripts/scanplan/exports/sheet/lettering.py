@@ -1,6 +1,7 @@
 """Text on a sheet: how wide it is, and which characters it may have."""
 
-from collections.abc import Iterable
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -51,22 +52,40 @@ def clean_text(text: str) -> str:
 def shorten_text(text: str, capitals_mm: float, width_mm: float) -> str:
     """Return a clean text, cut off with an ellipsis where it is longer than a width."""
     text = clean_text(text)
-    if measure_width_mm(text, capitals_mm) <= width_mm:
+    n_fit = _count_fitting(len(text), lambda n: text[:n], capitals_mm, width_mm)
+    if n_fit == len(text):
         return text
-    while text and measure_width_mm(f"{text}…", capitals_mm) > width_mm:
-        text = text[:-1]
-    return f"{text.rstrip()}…"
+    n_kept = _count_fitting(n_fit, lambda n: f"{text[:n]}…", capitals_mm, width_mm)
+    return f"{text[:n_kept].rstrip()}…"
 
 
 def wrap_text(text: str, capitals_mm: float, width_mm: float) -> list[str]:
     """Return a clean text on one line, or broken between words on two; what is over is cut off."""
-    words = clean_text(text).split()
-    for n_words in range(len(words), 0, -1):
-        first = " ".join(words[:n_words])
-        if measure_width_mm(first, capitals_mm) <= width_mm:
-            rest = " ".join(words[n_words:])
-            return [first, shorten_text(rest, capitals_mm, width_mm)] if rest else [first]
-    return [shorten_text(text, capitals_mm, width_mm)]
+    text = clean_text(text)
+    n_fit = _count_fitting(len(text), lambda n: text[:n], capitals_mm, width_mm)
+    if n_fit == len(text):
+        return [text]
+    first = text[: n_fit + 1].rpartition(" ")[0]
+    rest = text[len(first) :]
+    return [*filter(None, [first]), shorten_text(rest, capitals_mm, width_mm)]
+
+
+def _count_fitting(
+    n_letters: int, take_first: Callable[[int], str], capitals_mm: float, width_mm: float
+) -> int:
+    """Return how many of the first letters a width holds; no text with more of them is shorter.
+
+    Nothing is measured that is more than twice as long: a letter takes ten microseconds.
+    """
+
+    def measure_mm(n: int) -> float:
+        return measure_width_mm(take_first(n), capitals_mm)
+
+    tried = (*(2**power for power in range(n_letters.bit_length())), n_letters)
+    too_many = next((n for n in tried if measure_mm(n) > width_mm), None)
+    if too_many is None:
+        return n_letters
+    return bisect_right(range(1, too_many), width_mm, key=measure_mm)
 
 
 def word_box(word: Word, clear: float = 0.0) -> shapely.Polygon:

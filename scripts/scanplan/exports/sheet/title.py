@@ -8,7 +8,6 @@ import numpy as np
 from scanplan.exports.sheet.accuracy import state_accuracy
 from scanplan.exports.sheet.lettering import (
     clean_text,
-    measure_width_mm,
     rotation,
     shorten_text,
     wrap_text,
@@ -130,7 +129,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
 def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:
     """Yield a value of the title block between x and x, on two lines where one does not hold it."""
     x0, x1 = ends
-    is_large = head == "Project" and measure_width_mm(value, Letters.LARGE) <= x1 - x0
+    is_large = head == "Project" and shorten_text(value, Letters.LARGE, x1 - x0) == value
     size = Letters.LARGE if is_large else Letters.SMALL
     lines = wrap_text(value, size, x1 - x0)
     tag = TITLE_TAG + head.upper().replace(" ", "_")

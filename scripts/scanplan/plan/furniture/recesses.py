@@ -8,7 +8,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.geometry.parted_ground import FURNITURE_M2
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M

@@ -9,7 +9,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bare_parts, overlays
-from scanplan.geometry.narrow_places import FURNITURE_M2
+from scanplan.geometry.parted_ground import FURNITURE_M2
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
