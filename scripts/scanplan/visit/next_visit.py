@@ -1,5 +1,6 @@
 """The next visit: what of a plan it is to settle, from where, and in which order."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -8,9 +9,10 @@ import shapely
 
 from scanplan.geometry import overlays, roadmap, tour
 from scanplan.geometry.roadmap import RoadmapGrid
+from scanplan.geometry.stop_ways import StopWays
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
-from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 from scanplan.visit import questions, sight, standpoints
 from scanplan.visit.questions import Pieces, Question
 from scanplan.visit.sensor_reach import SensorReach
@@ -89,10 +91,9 @@ def plan_visit(
     seen = sight.find_seen(views, pieces, blocked, reach)
     chosen = standpoints.choose_views(seen, pieces)
     stops = _order_stops(grid, views, chosen, track_m[0])
-    shown = _shares_shown(seen[stops.view], pieces, len(asked))
-    any_view = np.stack([seen.any(axis=0), seen[stops.view].any(axis=0)])
-    seeable, known = _shares_shown(any_view, pieces, len(asked))
-    best = shown.argmax(axis=0) + 1 if len(shown) else np.zeros(len(asked), np.int64)
+    shown = [seen[view] for view in stops.view.tolist()]
+    seeable, known = (_shares_shown(views, pieces, len(asked)) for views in (seen, shown))
+    best = _find_best(shown, pieces, len(asked))
     standpoint = np.where(known > STRAY_SHARE, best, -1)
     return NextVisit(
         _question_columns(asked, pieces, seeable, known, standpoint),
@@ -124,26 +125,32 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     if not chosen:
         return _Stops(np.empty(0, np.int64), [])
     places_m = [start_m.tolist(), *views.place_m[chosen].tolist()]
-    cells = [roadmap.nearest_cell(grid, place_m) for place_m in places_m]
-    ways = [roadmap.cheapest_ways(grid, cell) for cell in cells]
-    cost = np.stack([costs[cells] for costs, _ in ways])
-    order = tour.shortest_tour((cost + cost.T) / 2, closed=False, first=0)
+    ways = StopWays(grid, np.array([roadmap.nearest_cell(grid, place) for place in places_m]))
+    order = tour.shortest_tour(ways, closed=False, first=0)
     ways_m = []
     for before, after in pairwise(order):
-        cells_between = roadmap.trace_way(ways[before][1], cells[before], cells[after])
-        corners_m = grid.xy_m[[cells_between[0], *cells_between]]
-        ways_m.append(
-            shapely.get_coordinates(overlays.simplify_shapes(shapely.linestrings(corners_m), 0))
-        )
+        cells = ways.trace(before, after)
+        corners_m = grid.xy_m[[cells[0], *cells]]
+        straight = overlays.simplify_shapes(shapely.linestrings(corners_m), 0)
+        ways_m.append(shapely.get_coordinates(straight))
     return _Stops(np.array([chosen[i - 1] for i in order[1:]], np.int64), ways_m)
 
 
-def _shares_shown(seen: BoolArray, pieces: Pieces, n_questions: int) -> FloatArray:
-    """Return the share of each question that is seen in pieces, (k, p) to (k, q)."""
-    shown = np.zeros((len(seen), n_questions))
-    for row, of_view in enumerate(seen):
-        shown[row] = np.bincount(pieces.question[of_view], pieces.share[of_view], n_questions)
-    return shown
+def _shares_shown(seen: Sequence[IntArray], pieces: Pieces, n_questions: int) -> FloatArray:
+    """Return the share of each question (q,) whose pieces any view sees."""
+    piece = np.unique(np.concatenate([np.empty(0, np.int64), *seen]))
+    shares = np.bincount(pieces.question[piece], pieces.share[piece], n_questions)
+    return shares.astype(float)
+
+
+def _find_best(seen: Sequence[IntArray], pieces: Pieces, n_questions: int) -> IntArray:
+    """Return which view, from 1, shows most of each question (q,); 0 where there is none."""
+    best, most = np.zeros(n_questions, np.int64), np.full(n_questions, -1.0)
+    for number, of_view in enumerate(seen, 1):
+        share = _shares_shown([of_view], pieces, n_questions)
+        best[share > most] = number
+        most = np.maximum(most, share)
+    return best
 
 
 def _question_columns(

@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import FACING
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m, line_shapes
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.types import FloatArray, IntArray
 from scanplan.visit.questions import Pieces
 from scanplan.visit.sensor_reach import SensorReach
 
@@ -58,8 +58,10 @@ def block_sight(plan: FloorPlan, height_m: float) -> BaseGeometry:
     )
 
 
-def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: SensorReach) -> BoolArray:
-    """Return which pieces (p,) are seen by which views (n,): (n, p) bool.
+def find_seen(
+    views: Views, pieces: Pieces, blocked: BaseGeometry, reach: SensorReach
+) -> list[IntArray]:
+    """Return which pieces each of the views (n,) sees, increasing.
 
     A piece is seen from in front of it, less than 60 degrees aside (but for what one stands at),
     within range and in the field, where nothing stands between.
@@ -73,36 +75,44 @@ def find_seen(views: Views, pieces: Pieces, blocked: BaseGeometry, reach: Sensor
     reach : SensorReach
     """
     shapely.prepare(blocked)
-    seen = np.zeros((len(views.place_m), len(pieces.share)), bool)
-    places_m, place = np.unique(views.place_m, axis=0, return_inverse=True)
-    place = place.reshape(-1)
-    for number, place_m in enumerate(places_m):
-        piece, way_m = _find_clear(place_m, pieces, blocked, reach.range_m)
+    seen: list[IntArray] = [np.empty(0, np.int64)] * len(views.place_m)
+    places_m, place, n_views = np.unique(
+        views.place_m, axis=0, return_inverse=True, return_counts=True
+    )
+    views_at = np.split(np.argsort(place.reshape(-1), kind="stable"), np.cumsum(n_views)[:-1])
+    tree = shapely.STRtree(np.asarray(shapely.points(pieces.place_m[:, 0])))
+    # a piece that is seen from either side is found by the one
+    apart_m = np.hypot(*(pieces.place_m[:, 1] - pieces.place_m[:, 0]).T)
+    around_m = reach.range_m + np.nanmax(apart_m, initial=0.0)
+    for place_m, views_here in zip(places_m, views_at, strict=True):
+        near = np.sort(tree.query(shapely.Point(place_m), predicate="dwithin", distance=around_m))
+        piece, way_m = _find_clear(place_m, pieces, near, blocked, reach.range_m)
         bearing_rad = np.arctan2(way_m[:, 1], way_m[:, 0])
-        for view in np.flatnonzero(place == number):
+        for view in views_here.tolist():
             shown = piece
             if reach.field_rad < 2 * np.pi:
                 off_rad = bearing_rad - views.heading_rad[view]
                 off_rad = np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi)
                 shown = piece[off_rad <= reach.field_rad / 2]
-            seen[view, shown] = True
+            seen[view] = np.unique(shown)
     return seen
 
 
 def _find_clear(
-    place_m: FloatArray, pieces: Pieces, blocked: BaseGeometry, range_m: float
+    place_m: FloatArray, pieces: Pieces, near: IntArray, blocked: BaseGeometry, range_m: float
 ) -> tuple[IntArray, FloatArray]:
-    """Return the pieces (c,) that one looks at freely from a place, and the ways (c, 2) to them.
+    """Return those of some pieces (c,) that one looks at freely from a place, and the ways (c, 2).
 
     One that is seen from either side stands twice.
     """
-    way_m = pieces.place_m - place_m
-    is_stood_at = np.isfinite(pieces.reach_m)[:, None]
+    way_m = pieces.place_m[near] - place_m
+    reach_m = pieces.reach_m[near]
+    is_stood_at = np.isfinite(reach_m)[:, None]
     apart_m = np.hypot(way_m[..., 0], way_m[..., 1])
-    toward_m = -(way_m * pieces.normal).sum(axis=-1)
-    is_near = apart_m <= np.minimum(pieces.reach_m, range_m)[:, None]
-    piece, side = np.nonzero((is_stood_at | (toward_m >= FACING * apart_m)) & is_near)
-    ends_m = pieces.place_m[piece, side]
+    toward_m = -(way_m * pieces.normal[near]).sum(axis=-1)
+    is_near = apart_m <= np.minimum(reach_m, range_m)[:, None]
+    row, side = np.nonzero((is_stood_at | (toward_m >= FACING * apart_m)) & is_near)
+    ends_m = pieces.place_m[near[row], side]
     sights = shapely.linestrings(np.stack([np.broadcast_to(place_m, ends_m.shape), ends_m], 1))
     clear = np.flatnonzero(~shapely.intersects(blocked, sights))
-    return piece[clear], way_m[piece[clear], side[clear]]
+    return near[row[clear]], way_m[row[clear], side[clear]]

@@ -1,5 +1,7 @@
 """Where a sensor may stand, and the fewest places from which questions are settled."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 
@@ -8,7 +10,7 @@ from scanplan.geometry.roadmap import RoadmapGrid
 from scanplan.plan.floorplan import WAYS, FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
 from scanplan.selection import lazy_greedy
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.types import FloatArray, IntArray
 from scanplan.visit.questions import Pieces
 
 
@@ -50,37 +52,38 @@ class SettledQuestions(lazy_greedy.SingleGains):
 
     Parameters
     ----------
-    seen : (n, p) bool
-        Which views see which pieces.
+    seen : sequence of n (k,) int64
+        Which pieces each view sees, increasing.
     pieces : Pieces
     """
 
-    def __init__(self, seen: BoolArray, pieces: Pieces) -> None:
+    def __init__(self, seen: Sequence[IntArray], pieces: Pieces) -> None:
         self._seen, self._pieces = seen, pieces
-        self._known = np.zeros(seen.shape[1], bool)
+        self._known = np.zeros(len(pieces.share), bool)
         super().__init__(len(seen))
 
     def measure_gain(self, i: int) -> float:
         """Return how many questions more a view would show, parts of them added up."""
-        return float(self._pieces.share[self._seen[i] & ~self._known].sum())
+        seen = self._seen[i]
+        return float(self._pieces.share[seen[~self._known[seen]]].sum())
 
     def cover(self, i: int) -> None:
         """See what a view sees."""
-        self._known |= self._seen[i]
+        self._known[self._seen[i]] = True
 
 
-def choose_views(seen: BoolArray, pieces: Pieces) -> list[int]:
+def choose_views(seen: Sequence[IntArray], pieces: Pieces) -> list[int]:
     """Choose the fewest views, greedily, until none shows more than a stray part of a question.
 
     Of views that show about as much the first is taken.
 
     Parameters
     ----------
-    seen : (n, p) bool
-        Which views see which pieces.
+    seen : sequence of n (k,) int64
+        Which pieces each view sees, increasing.
     pieces : Pieces
     """
-    if not seen.any():
+    if not any(map(len, seen)):
         return []
     chosen = lazy_greedy.choose_greedily(SettledQuestions(seen, pieces), tie=STRAY_SHARE)
     return [view for view, gain in chosen if gain > STRAY_SHARE]
