@@ -4,6 +4,13 @@ MORE_MEMORY = (
     "close other programs, use fewer cores, or allow more (`ulimit -v`, `mem_mb` of a job)"
 )
 """What to do where memory is not enough."""
+# what the loader of libraries, the system, Python and Arrow say where address space ends
+_WANT_OF_MEMORY = (
+    "failed to map segment",
+    "Cannot allocate memory",
+    "can't start new thread",
+    "Failed to launch worker thread",
+)
 MOST_NAMED = 8
 """Things in one line: nobody reads a longer one."""
 
@@ -26,3 +33,8 @@ class StageError(Exception):
         line = show_controls(" ".join(str(message).split()))
         # a value may be a page long: what is before and behind it says more
         super().__init__(line if len(line) <= 1200 else f"{line[:800]} ... {line[-300:]}")
+
+
+def lacks_memory(error: BaseException) -> bool:
+    """Return whether memory ended, by the kind of an error or by its words."""
+    return isinstance(error, MemoryError) or any(words in str(error) for words in _WANT_OF_MEMORY)

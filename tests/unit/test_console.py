@@ -160,3 +160,14 @@ def test_a_stage_that_waits_for_a_cluster_is_not_at_work(console, file, monkeypa
     console._tell_progress()
     (line,) = file.getvalue().splitlines()
     assert line.startswith("0/2 floor register_scans: ") and "  70.0 s  3/9 scans" in line
+
+
+LATE = "register_scans: takes long: 120 s, 10 times as long as expected; at 'find narrow places'"
+
+
+def test_a_stage_that_says_what_it_is_at_is_shown_with_it(console, file):
+    begin(console, 7, "register_scans", f"12:00 INFO {LATE}\n")
+    console._tell_progress()
+    console._stages[7].told_s -= 61
+    console._tell_progress()
+    assert "takes long: 120 s, 10 times as long" in file.getvalue()

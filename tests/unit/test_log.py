@@ -3,6 +3,7 @@
 import re
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -70,12 +71,59 @@ def test_too_little_memory_is_told_as_that_with_what_to_do(tmp_path, body):
     assert "allow more (`ulimit -v`" in result.stderr and "Traceback" in log
 
 
+@pytest.mark.parametrize("product", ["matrix @ matrix", "blas.dgemm(1.0, matrix, matrix)"])
+def test_a_product_of_matrices_ends_where_memory_ends(tmp_path, product):
+    """OpenBLAS asks for work space for ever where a limit refuses it."""
+    limited = """import mmap, resource
+    import numpy as np
+    from scipy.linalg import blas
+    matrix = np.ones((300, 300))
+    resource.setrlimit(resource.RLIMIT_DATA, (BYTES, BYTES))
+    """
+    begin = f"{limited.replace('BYTES', '150 << 20')}log.blas_memory.take_work_space()\n    "
+    result, said = run(tmp_path, f"{begin}bytearray(1 << 30)")
+    assert result.returncode == 1 and "not enough memory" in said
+    fill = "\n    kept = []\n    while True:\n        try: kept.append(mmap.mmap(-1, 1 << 20))"
+    fill += "\n        except OSError: break\n    del kept[-9:]\n    "
+    result, _ = run(tmp_path, f"{begin.replace('150', '600')}{fill}{product}")
+    assert result.returncode == 0
+
+
 @pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM"])
 def test_an_interrupted_stage_says_so_and_nothing_of_memory(tmp_path, sent):
     # whoever runs the tests in the background may ignore SIGINT, and children inherit that
     body = "signal.signal(signal.SIGINT, signal.default_int_handler); "
     result, log = run(tmp_path, f"{body}os.kill(os.getpid(), signal.{sent}); time.sleep(9)")
     assert result.returncode == 1 and "Traceback" not in log + result.stderr
+    assert "ERROR stage: was interrupted; the same command goes on from here" in log
+
+
+@pytest.mark.parametrize(
+    ("sent", "body"),
+    [
+        ("SIGTERM", "hashlib.pbkdf2_hmac('sha256', b'', b'', 1 << 26)"),
+        ("SIGINT", "hashlib.pbkdf2_hmac('sha256', b'', b'', 1 << 26)"),
+        ("SIGTERM", "workers.map_in_threads(time.sleep, [30, 30], 2)"),
+        ("SIGTERM", "workers.begin_in_thread(time.sleep, 30, threads=2); time.sleep(30)"),
+        ("SIGTERM", "sleep_in_workers()"),
+    ],
+    ids=["library", "ctrl_c", "threads", "thread", "workers"],
+)
+def test_a_stage_ends_within_two_seconds_of_a_signal_whatever_it_is_at(tmp_path, sent, body):
+    work = """import hashlib, threading
+    from scanplan.stage import workers
+    def sleep_in_workers():
+        with workers.open_pool(2) as run:
+            list(run(time.sleep, [(30,), (30,)]))
+    def send():
+        open('sent', 'w').close()
+        os.kill(os.getpid(), signal.SENT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    threading.Timer(0.5, send).start()
+    """
+    result, log = run(tmp_path, work.replace("SENT", sent) + body)
+    assert result.returncode == 1
+    assert time.time() - (tmp_path / "sent").stat().st_mtime < 2
     assert "ERROR stage: was interrupted; the same command goes on from here" in log
 
 

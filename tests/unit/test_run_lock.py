@@ -71,6 +71,23 @@ def test_a_signal_is_noted_and_does_what_it_did(handlers):
     run.end()
 
 
+def test_stages_that_a_signal_does_not_end_are_killed_within_two_seconds(handlers):
+    """As one in a library that holds Python's lock; others, as of a cluster, are left alone."""
+    deaf = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); time.sleep(9)"
+    stage, other = (
+        subprocess.Popen([sys.executable, "-c", deaf, name])
+        for name in ("/there/.snakemake/scripts/tmp1.stage.py", "scancel")
+    )
+    signal.signal(signal.SIGTERM, lambda *_: None)
+    run = run_lock.FolderRun()
+    run.begin()
+    os.kill(os.getpid(), signal.SIGTERM)
+    assert stage.wait(timeout=2) == -signal.SIGKILL and other.poll() is None
+    other.kill()
+    other.wait()
+    run.end()
+
+
 def test_an_ignored_signal_stays_ignored(handlers):
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     run = run_lock.FolderRun()

@@ -13,14 +13,12 @@ from pathlib import Path
 from typing import TextIO, TypeVar
 
 from scanplan import interrupts
-from scanplan.errors import MORE_MEMORY, StageError, show_controls
+from scanplan.errors import MORE_MEMORY, StageError, lacks_memory, show_controls
 from scanplan.geometry import fallbacks
 from scanplan.plain_types import FilePath
-from scanplan.stage import bytecode, orphans
+from scanplan.stage import blas_memory, bytecode, orphans, overtime, prompt_end
 
 _TOLD_EVERY_S = 1.0  # between lines of progress: often enough to follow, seldom enough to read
-# what the loader of libraries, the system and Python say where address space ends
-_WANT_OF_MEMORY = ("failed to map segment", "Cannot allocate memory", "can't start new thread")
 _log = logging.getLogger("scanplan")
 _screen: TextIO | None = None
 
@@ -49,7 +47,7 @@ def log_to_file(path: FilePath) -> Iterator[None]:
         The log file; overwritten, its folder made where missing.
     """
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    with _redirect_output(path):
+    with _leave_at_once(), _redirect_output(path):
         handler = logging.StreamHandler()
         handler.setFormatter(_Formatter("%(asctime)s %(levelname)s %(message)s"))
         logging.basicConfig(level=logging.INFO, handlers=[handler], force=True)
@@ -64,7 +62,12 @@ def log_to_file(path: FilePath) -> Iterator[None]:
         interrupts.begin_work()
         signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
-            with _end_in_one_line(path):
+            with (
+                prompt_end.end_promptly(lambda: _tell_interrupt(path)),
+                overtime.tell_overtime(Path(path).stem, overtime.expected_s(), log_line),
+                _end_in_one_line(path),
+            ):
+                blas_memory.take_work_space()
                 yield
             outcome = "done"
         finally:
@@ -78,6 +81,25 @@ def _tell_fallbacks() -> None:
     """Say how many overlays of shapes GEOS could not do at first, where there were any."""
     if n_fallbacks := fallbacks.take_fallbacks():
         _log.info("overlays done another way, for GEOS contradicted itself: %d", n_fallbacks)
+
+
+@contextmanager
+def _leave_at_once() -> Iterator[None]:
+    """End the process of a run's stage with its work, all files of which are written by then.
+
+    What libraries do when a process ends can crash or take for ever where memory has ended.
+    """
+    status: object = 0
+    try:
+        yield
+    except SystemExit as end:
+        status = end.code
+        if not isinstance(status, int):
+            raise
+    if hasattr(sys.modules["__main__"], "snakemake"):
+        os._exit(int(status))
+    if status:
+        raise SystemExit(status)
 
 
 @contextmanager
@@ -120,7 +142,7 @@ def _end_in_one_line(path: FilePath) -> Iterator[None]:
         _show(f"{stage}: {error}")
         raise SystemExit(1) from None
     except KeyboardInterrupt:
-        _log.error("%s: %s", stage, interrupts.INTERRUPTED)
+        _tell_interrupt(path)
         raise SystemExit(1) from None
     except Exception as error:
         _log.exception("unexpected failure")
@@ -130,9 +152,15 @@ def _end_in_one_line(path: FilePath) -> Iterator[None]:
         raise SystemExit(1) from None
 
 
+def _tell_interrupt(path: FilePath) -> None:
+    # told already where the log is closed
+    if _screen is not None:
+        _log.error("%s: %s", Path(path).stem, interrupts.INTERRUPTED)
+
+
 def _explain(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
-    if isinstance(error, MemoryError) or any(words in reason for words in _WANT_OF_MEMORY):
+    if lacks_memory(error):
         return f"not enough memory ({reason}): {MORE_MEMORY}"
     if isinstance(error, (EOFError, ValueError)) and "marshal" in reason:
         bytecode.remove_cut_files()

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from scanplan.errors import StageError
 from scanplan.geometry import fallbacks
-from scanplan.stage import orphans
+from scanplan.stage import blas_memory, orphans
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -153,6 +153,7 @@ def _begin_worker(setup: Callable[..., None] | None, state: tuple[Any, ...]) -> 
     global _setup_fault
     orphans.end_with_supervisor()
     try:
+        blas_memory.take_work_space()
         _set_up(setup, state)
     except Exception as error:
         # raised here, it would look as if the process had been ended from outside

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from scanplan.errors import MORE_MEMORY, StageError
+from scanplan.errors import MORE_MEMORY, StageError, lacks_memory
 from scanplan.store import arrow_arrays, atomic
 from scanplan.store.schemas import Schema
 from scanplan.types import Array, FilePath
@@ -148,7 +148,7 @@ def open_file(
     except FileNotFoundError:
         raise StageError(f"{path}: does not exist; run the stage that makes it") from None
     except (pa.ArrowException, MemoryError, OSError, UnicodeDecodeError) as error:
-        if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+        if lacks_memory(error) or getattr(error, "errno", None) == errno.ENOMEM:
             # a damaged length asks for more than there is, too
             fault = f"not enough memory to read it ({error}): {MORE_MEMORY}"
             raise StageError(f"{path}: {fault}; with memory to spare, {RERUN}") from None

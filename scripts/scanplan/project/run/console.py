@@ -43,7 +43,7 @@ _CHATTER = (
 _CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
 # the stage itself says what was wrong
 _ERRORS_OF_STAGES = ("CalledProcessError", "RuleException")
-_PROGRESS = re.compile(r" INFO [^:]+: (\d+(?:/\d+)? [^:]*, [\d.]+ per s.*)$")
+_PROGRESS = re.compile(r" INFO [^:]+: ((?:\d+(?:/\d+)? [^:]*, [\d.]+ per s|takes long: ).*)$")
 _SAID = re.compile(r" (INFO|WARNING) (.*)$")
 
 

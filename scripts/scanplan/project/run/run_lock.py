@@ -8,11 +8,15 @@ import fcntl
 import os
 import signal
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from datetime import timedelta
 from pathlib import Path
 from typing import TextIO
+
+import psutil
 
 from scanplan import interrupts
 from scanplan.errors import StageError
@@ -21,6 +25,8 @@ from scanplan.store import atomic
 _State = tuple[int, ...]
 
 LOCK_FILE = Path(".snakemake/scanplan.lock")
+_STAGES_END_S = 1.5  # half a second longer than they take, unless a library holds Python's lock
+_OF_STAGES = ".snakemake/scripts/"  # in the command of every stage
 
 
 def lock_folder() -> TextIO:
@@ -152,7 +158,17 @@ class FolderRun:
                 interrupts.end_in_one_line(number)
             self.interrupted = True
             interrupts.refuse_children()
+            threading.Thread(target=_kill_stages, daemon=True).start()
             self.exit_status = interrupts.exit_status(number)
             handler(number, frame)
 
         return note
+
+
+def _kill_stages() -> None:
+    """Kill the stages that a signal to end has not ended: what they began is discarded."""
+    time.sleep(_STAGES_END_S)
+    for process in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):
+            if any(_OF_STAGES in word for word in process.cmdline()):
+                process.kill()
