@@ -171,7 +171,7 @@ def _run(project: Path, revision: str, folder: Path, drive: Path) -> list[Stage]
     started, before = time.perf_counter(), _children_s()
     subprocess.run(command, cwd=code, env=environment, check=True)
     seconds, processor_s = time.perf_counter() - started, _children_s() - before
-    stages = [_read_stage(path) for path in (code / "benchmarks" / drive.name).glob("*.tsv")]
+    stages = read_stages(code / "benchmarks" / drive.name)
     kept_mb = sum(f.stat().st_size for f in (code / "results").rglob("*") if f.is_file()) / 1e6
     for stage in sorted(stages, key=lambda stage: -stage.processor_s):
         print(
@@ -185,6 +185,11 @@ def _run(project: Path, revision: str, folder: Path, drive: Path) -> list[Stage]
         flush=True,
     )
     return stages
+
+
+def read_stages(folder: Path) -> list[Stage]:
+    """Return what Snakemake measured of the stages of a dataset, by name."""
+    return [_read_stage(path) for path in sorted(folder.glob("*.tsv"))]
 
 
 def _read_stage(path: Path) -> Stage:

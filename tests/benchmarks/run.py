@@ -14,6 +14,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
        run.py overlays [COUNT [FIRST SEED]]
+       run.py growth FOLDER [scans | rooms | extent | glass | TIMES ...]
        run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR | KEY=VALUE ...]
        run.py compare_realistic SCORES SCORES
 
@@ -43,6 +44,10 @@ it is worth on kinds of buildings that it was not fitted on.
 `confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
 that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
 reliability diagram in that folder.
+
+`growth` runs the default target on drives that are 1, 2, 4 and 8 times as long, as many rooms or
+as wide (or as many TIMES as are said), and on a hall of glass with and without ground around it,
+and prints what every stage takes of each.
 
 `realistic` makes the plans of 84 drives through 42 buildings drawn from seeds, and of real floors
 with a truth, by the code of a commit, and scores them in the terms of the field: tables of measures
@@ -234,6 +239,16 @@ def bench_overlays(count: str = "100000", first: str = "0") -> None:
     overlays_bench.bench(int(count), int(first), os.cpu_count() or 1)
 
 
+def bench_growth(folder: str, *words: str) -> None:
+    """What every stage takes of drives of several sizes."""
+    import growth_bench
+
+    times = [int(word) for word in words if word.isdigit()]
+    series = [word for word in words if not word.isdigit()]
+    kept = Path(folder).resolve()
+    growth_bench.bench(ROOT, kept, times or (1, 2, 4, 8), series or growth_bench.SERIES)
+
+
 def bench_realistic(folder: str, revision: str = "HEAD", *words: str) -> None:
     """Plans of realistic buildings and real floors against what is true of them."""
     import realistic
@@ -261,6 +276,7 @@ APART: dict[str, Callable[..., None]] = {
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,
     "overlays": bench_overlays,
+    "growth": bench_growth,
     "pipeline": bench_pipeline,
     "sheets": bench_sheets,
     "ids": bench_ids,

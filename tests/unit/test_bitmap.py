@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import ndimage
 
 from scanplan.errors import StageError
 from scanplan.geometry import bitmap
@@ -77,3 +78,11 @@ class TestGrid:
             bitmap.fit_grid(lines((0, 0, 1e30, 1e30)), 0.05)
         with pytest.raises(ValueError, match="above 0"):
             bitmap.fit_grid(lines(), 0)
+
+
+@given(st.integers(1, 12), st.integers(1, 12), st.integers(0, 2**32 - 1))
+def test_distances_to_the_outline_are_scipys_to_the_bit(rows, columns, seed):
+    inside = np.random.default_rng(seed).random((rows, columns)) < 0.8
+    inside[0, 0] = False
+    expected = ndimage.distance_transform_edt(inside)
+    np.testing.assert_array_equal(bitmap.distances_to_outline(inside), expected)

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import shapely
+from scipy import ndimage
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
@@ -117,6 +118,29 @@ def fill_polygons(polygons: Iterable[BaseGeometry], grid: Grid) -> BoolArray:
                 columns = np.ceil(x0 + (rows - y0) * (x1 - x0) / (y1 - y0)).astype(int)
                 is_odd[rows, columns] ^= 1
     return np.bitwise_xor.accumulate(is_odd, axis=1).astype(bool)
+
+
+def distances_to_outline(inside: BoolArray) -> FloatArray:
+    """Return how far each cell is from the nearest that is not inside, in cells; 0 for those.
+
+    The same numbers as scipy's distances, which take 50 bytes a cell while they are worked out: of
+    a building of 400 m that would be 3 GB.
+
+    Parameters
+    ----------
+    inside : (rows, columns) bool
+        Some are not.
+    """
+    nearest = np.empty((2, *inside.shape), np.int32)
+    ndimage.distance_transform_edt(
+        inside.view(np.int8), return_distances=False, return_indices=True, indices=nearest
+    )
+    far = np.zeros(inside.shape)
+    for row in range(len(inside)):
+        column = np.flatnonzero(inside[row])
+        down, along = (nearest[0, row, column] - row, nearest[1, row, column] - column)
+        far[row, column] = np.sqrt(down.astype(float) ** 2 + along.astype(float) ** 2)
+    return far
 
 
 def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.geometry.bare_parts import draw_way
-from scanplan.geometry.bitmap import Grid, fill_polygons
+from scanplan.geometry.bitmap import Grid, distances_to_outline, fill_polygons
 from scanplan.geometry.parted_ground import FURNITURE_M2, part_enough
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -70,7 +70,7 @@ def find_narrow_places(
         return []
     grid = _fit_grid(filled, cell_m)
     inside = fill_polygons([filled], grid)
-    far_m = np.asarray(ndimage.distance_transform_edt(inside)) * cell_m
+    far_m = distances_to_outline(inside) * cell_m
     way = draw_way(visited_m, cell_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
@@ -143,14 +143,17 @@ def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: floa
         Distances beyond this count as this: what is as wide is one basin.
     cell_m : float
     """
-    basin = np.zeros(far_m.size, np.int64)
-    number = np.full(far_m.size, -1)
+    basin = np.zeros(far_m.size, np.int32)
+    number = np.full(far_m.size, -1, np.int32)
     widest_m = np.zeros(1)
     meetings = []
     steps = far_m.shape[1] * np.repeat((-1, 0, 1), 3) + np.tile((-1, 0, 1), 3)
-    level_of = np.minimum(np.floor(far_m / cell_m + 0.5), max(round(most_m / cell_m), 1))
-    of_level = np.argsort(-level_of, axis=None, kind="stable")
-    level_of = level_of.ravel()[of_level].astype(np.int64)
+    # ground is little of what lies around it
+    inside = np.flatnonzero(far_m)
+    most = max(round(most_m / cell_m), 1)
+    level_of = np.minimum(np.floor(far_m.flat[inside] / cell_m + 0.5), most).astype(np.int32)
+    order = np.argsort(-level_of, kind="stable")
+    of_level, level_of = inside[order], level_of[order]
     for level in range(level_of[0] if len(level_of) else 0, 0, -1):
         cells = of_level[np.searchsorted(-level_of, -level) : np.searchsorted(-level_of, 1 - level)]
         _grow(basin, cells, steps)
@@ -168,7 +171,7 @@ def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: floa
     for one, other, level_m in meetings:
         is_looked_into = visited[one] != visited[other]
         joined.meet(one, other, level_m, _NARROWER_UNVISITED if is_looked_into else _NARROWER)
-    return joined.joined[basin].reshape(far_m.shape)
+    return joined.joined.astype(np.int32)[basin].reshape(far_m.shape)
 
 
 def _grow(basin: IntArray, cells: IntArray, steps: IntArray) -> None:

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.ndimage import distance_transform_edt, maximum_filter
+from scipy.ndimage import maximum_filter
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
+from scanplan.geometry.bitmap import distances_to_outline
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
@@ -60,7 +61,7 @@ def make_grid(part: BaseGeometry, clearance_m: float, cell_m: float) -> RoadmapG
     inner = overlays.buffer_shapes(part, -_MARGIN_M)
     shapely.prepare(inner)
     inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
-    near_m = np.asarray(distance_transform_edt(inside)) * cell_m + clearance_m
+    near_m = distances_to_outline(inside) * cell_m + clearance_m
     middle = _is_middle(near_m, cell_m)[inside]
     near_m = near_m[inside]
     cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / ROOMY_M, 0, 1)
