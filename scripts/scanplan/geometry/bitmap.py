@@ -8,7 +8,6 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import shapely
-from scipy import ndimage
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
@@ -131,6 +130,8 @@ def distances_to_outline(inside: BoolArray) -> FloatArray:
     inside : (rows, columns) bool
         Some are not.
     """
+    from scipy import ndimage  # 0.1 s, and most stages that fill grids do without
+
     nearest = np.empty((2, *inside.shape), np.int32)
     ndimage.distance_transform_edt(
         inside.view(np.int8), return_distances=False, return_indices=True, indices=nearest
