@@ -61,6 +61,7 @@ def interpolate_poses(
             found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
+        found = found.add(contradictions=candidates.describe_standstill(pose, covered))
         is_steady = np.ones(len(t_ns), bool)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)

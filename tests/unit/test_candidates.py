@@ -31,6 +31,17 @@ def test_every_nth():
     assert candidates.choose_candidates(poses([]), keep_every=5, **FAR).tolist() == []
 
 
+@pytest.mark.parametrize(
+    ("xs", "is_told"), [([3.0] * 24, True), ([3.0] * 23 + [3.1], False), ([3.0] * 5, False)]
+)
+def test_a_sensor_that_stands_still_is_told(xs, is_told):
+    pose = np.concatenate([poses(xs), poses([np.nan])])
+    has_pose = np.array([True] * len(xs) + [False])
+    found = candidates.describe_standstill(pose, has_pose)
+    assert bool(found) == is_told
+    assert not found or (f"all {len(xs)} scans" in found[0] and "input.pose_topic" in found[0])
+
+
 def test_scans_a_metre_apart_are_all_kept():
     chosen = candidates.choose_candidates(
         poses(np.arange(12.0)), keep_every=5, max_step_m=0.5, max_turn_deg=30

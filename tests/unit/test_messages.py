@@ -187,6 +187,20 @@ def test_laser_scan_may_overlap_by_a_few_beams():
     np.testing.assert_allclose(xyz_m[:2], xyz_m[360:], atol=1e-6)
 
 
+@pytest.mark.parametrize("increment", [1e-30, 0.009, -0.0174])
+def test_laser_scan_whose_angles_contradict_one_another_is_refused(increment):
+    # a turn of 360 beams is 0.0175 rad a beam
+    scan = bag_making.laser_scan(np.ones(360), angle_increment=increment)
+    with pytest.raises(StageError, match=r"angle_min 0 to angle_max 6.28319 .* 360 beams"):
+        messages.read_laser_scan(scan)
+
+
+@pytest.mark.parametrize("angle_max", [0.0, 2 * np.pi * 359 / 360, 2 * np.pi * 361 / 360])
+def test_laser_scan_may_leave_out_its_last_angle_or_count_a_beam_more(angle_max):
+    scan = bag_making.laser_scan(np.ones(360), angle_max=angle_max)
+    assert np.isfinite(messages.read_laser_scan(scan)[0]).all()
+
+
 def test_laser_scan_without_limit_or_beams():
     assert np.isfinite(
         messages.read_laser_scan(bag_making.laser_scan([50.0, 60.0], range_max=0.0))[0]

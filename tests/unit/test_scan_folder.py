@@ -1,3 +1,5 @@
+import struct
+
 import numpy as np
 import pytest
 
@@ -246,3 +248,32 @@ def test_poses_may_begin_with_a_mark_of_their_coding(tmp_path):
     (tmp_path / "poses.tum").write_text("100 1 2 3 0 0 0 1\n", encoding="utf-8-sig")
     t_ns, rows = tum.read_tum(tmp_path / "poses.tum")
     assert t_ns.tolist() == [100 * 10**9] and rows[0, :3].tolist() == [1, 2, 3]
+
+
+def write_compressed_pcd(path, n_points, unpacked, packed=b""):
+    """A PCD that states so many points, and so many bytes to unpack."""
+    header = (
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+        f"WIDTH {n_points}\nHEIGHT 1\nPOINTS {n_points}\nDATA binary_compressed\n"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + struct.pack("<II", len(packed), unpacked) + packed)
+
+
+@pytest.mark.parametrize(
+    ("n_points", "unpacked", "said"),
+    [
+        # a point has 12 bytes
+        (150_000_000, 1_800_000_000, "unpack to 1800000000, above 536870912"),
+        (10, 2**32 - 1, "unpack to 4294967295, above 536870912"),
+        (1000, 120, "points need 12000 bytes, its binary_compressed data have 120"),
+    ],
+)
+def test_a_cloud_that_unpacks_to_too_much_is_refused_before_it_is_read(
+    tmp_path, monkeypatch, n_points, unpacked, said
+):
+    monkeypatch.setattr(scan_folder, "_read_fields", None)
+    files = folder(tmp_path, ["1700000000.5.pcd"], TWO)
+    write_compressed_pcd(tmp_path / "scans/1700000000.5.pcd", n_points, unpacked, bytes(1000))
+    with open_survey(files, **LIMITS) as survey, pytest.raises(StageError, match=said):
+        list(survey.scans([0]))

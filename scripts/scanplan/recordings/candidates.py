@@ -12,6 +12,9 @@ from scanplan.stage import log
 from scanplan.store import pose_columns as poses_in_tables
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
+_STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
+_FEWEST_TO_STAND = 10  # a second of most sensors
+
 
 def choose_candidates(
     world_from_sensor: FloatArray,
@@ -67,6 +70,23 @@ def choose_candidates(
             is_due = False
             last = i if has_pose[i] else last
     return np.array(chosen, np.int64)
+
+
+def describe_standstill(world_from_sensor: FloatArray, has_pose: BoolArray) -> list[str]:
+    """Return whether all poses are one and the same, as a sentence.
+
+    Parameters
+    ----------
+    world_from_sensor : (n, 4, 4) float
+    has_pose : (n,) bool
+    """
+    poses = np.asarray(world_from_sensor, float)[has_pose]
+    if len(poses) < _FEWEST_TO_STAND or np.ptp(poses, axis=0).max() > _STILL:
+        return []
+    return [
+        f"the poses of all {len(poses):,} scans are the same: if the sensor stood still, only what"
+        " is seen from there is drawn; if it moved, its poses (input.pose_topic) are wrong"
+    ]
 
 
 def _has_moved(before: FloatArray, now: FloatArray, max_step_m: float, max_turn_deg: float) -> bool:

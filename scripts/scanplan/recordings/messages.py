@@ -14,6 +14,7 @@ from scanplan.types import Array, FloatArray
 _POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 TIME_FIELDS = ("time", "t", "timestamp")
 """Names that drivers give to the time of a point."""
+_SPAN_SLACK = 0.02  # of angles that drivers round to a degree; lasers see 60 degrees and more
 
 
 def read_header(raw: bytes, *, ros2: bool) -> tuple[int, str]:
@@ -116,7 +117,8 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
     Raises
     ------
     StageError
-        If the angles of the beams are not given, or those of more than one turn.
+        If the angles of the beams are not given, those of more than one turn, or others than those
+        of the first beam and the last say.
     """
     range_m = np.asarray(message.ranges, np.float64).reshape(-1)
     beam = np.arange(len(range_m))
@@ -133,12 +135,31 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
             f" {np.ptp(angle_rad):.1f} rad, more than once around: the message wants radians,"
             " these may be degrees"
         )
+    _check_span(message, len(range_m))
     # range_max itself is what many drivers report for "no return"
     limit_m = message.range_max if message.range_max > 0 else np.inf
     range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
     xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
     step_s = float(message.time_increment)
     return xyz_m.astype(np.float32), beam * step_s if step_s > 0 else None
+
+
+def _check_span(message: Any, n_beams: int) -> None:
+    """Refuse a scan whose angle from the first beam to the last is stated in two ways.
+
+    Drivers count a beam more or less, or leave the last angle out: as zero, or as the first.
+    """
+    stated_rad = float(message.angle_max) - float(message.angle_min)
+    turned_rad = (n_beams - 1) * float(message.angle_increment)
+    is_stated = n_beams > 1 and message.angle_max not in (0, message.angle_min)
+    most_rad = _SPAN_SLACK * abs(stated_rad) + 2 * abs(float(message.angle_increment))
+    if is_stated and np.isfinite(stated_rad) and abs(turned_rad - stated_rad) > most_rad:
+        raise StageError(
+            f"angle_min {message.angle_min:g} to angle_max {message.angle_max:g} are"
+            f" {stated_rad:.3g} rad, {n_beams} beams of angle_increment"
+            f" {message.angle_increment:g} turn by {turned_rad:.3g}: one of them is wrong; correct"
+            " the driver's settings, or leave these messages out"
+        )
 
 
 def _view_records(message: Any) -> Array:

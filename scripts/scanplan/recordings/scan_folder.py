@@ -14,6 +14,7 @@ from scanplan.project import dataset_files
 from scanplan.recordings import clocks, clouds, frame_edges
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
+from scanplan.recordings.integrity.pcd_size import check_pcd_size
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion import lidar_odometry, point_times
@@ -218,8 +219,7 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
 
 def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
     """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
-    if path.suffix.lower() == ".ply":
-        check_ply_size(path)
+    (check_ply_size if path.suffix.lower() == ".ply" else check_pcd_size)(path)
     with path.open("rb") as file:
         declared = _DECLARED.search(file.read(io.DEFAULT_BUFFER_SIZE))
     fields = _read_fields(path)
