@@ -103,3 +103,28 @@ def test_a_folder_that_is_a_file_is_told(tmp_path):
 def test_what_cannot_be_read_meanwhile_is_not_taken_for_it(tmp_path):
     with pytest.raises(FileNotFoundError), atomic.replace_file(tmp_path / "a.txt"):
         (tmp_path / "nowhere").read_text()
+
+
+@pytest.mark.parametrize("call", ["fsync", "replace"])
+def test_a_disk_that_fails_is_told_with_the_file(tmp_path, monkeypatch, call):
+    def fail(*_, **__):
+        raise OSError(errno.EIO, "broken")
+
+    atomic.write_text(tmp_path / "a.txt", "old")
+    monkeypatch.setattr(f"os.{call}", fail)
+    with pytest.raises(StageError, match=r"a.txt: cannot be written \(Input.*\); the disk"):
+        atomic.write_text(tmp_path / "a.txt", "new")
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.txt", "old")]
+
+
+def test_where_nothing_can_be_removed_the_first_fault_is_told(tmp_path, monkeypatch):
+    def fail(*_, **__):
+        raise PermissionError(errno.EPERM, "refused")
+
+    monkeypatch.setattr("os.unlink", fail)
+    with (
+        pytest.raises(StageError, match=r"a.txt: cannot be written \(No space"),
+        atomic.replace_file(tmp_path / "a.txt") as temporary,
+    ):
+        temporary.touch()
+        raise OSError(errno.ENOSPC, "no room")

@@ -191,6 +191,21 @@ def test_a_name_that_snakemake_takes_for_a_placeholder_is_refused(tmp_path, name
         dataset_files.find_files((tmp_path / name).parent)
 
 
+@pytest.mark.parametrize("name", ["{x}.bag", "run}.bag", "a{0}b/run.bag"])
+def test_a_name_with_braces_is_refused(tmp_path, name):
+    put(tmp_path / name)
+    with pytest.raises(StageError, match=r"Snakemake takes [{}] ?.* in a name .*; rename it"):
+        dataset_files.find_files((tmp_path / name).parent)
+
+
+def test_a_name_that_is_no_text_is_refused_and_shown_as_text(tmp_path):
+    put(tmp_path / "run\udcff.bag")
+    with pytest.raises(StageError, match=r"has .*udcff.* in its name; rename it") as refused:
+        dataset_files.find_files(tmp_path)
+    assert "run\\udcff.bag" in str(refused.value)
+    str(refused.value).encode()
+
+
 def test_signs_alone_are_no_placeholder(tmp_path):
     put(tmp_path / "a<b.bag")
     put(tmp_path / "<B>.bag")

@@ -104,3 +104,15 @@ def test_a_recording_in_the_place_of_another_is_told_by_its_bytes(tmp_path):
     assert len({whole, *map(digest, others)}) == 4
     assert digest(b"head" + middle + b"tail", "other.bag") != whole
     assert digest(b"") != digest(b"x")
+
+
+def test_a_note_that_is_no_text_is_told_with_what_to_do():
+    made("x", "a/x")
+    Path("results/x/source.txt").write_bytes(b"\xff\xfe a")
+    with pytest.raises(StageError, match=r"results/x/source.txt: is no text .* move results/x"):
+        provenance.check_sources({"x": "a/x"})
+
+
+def test_a_recording_that_is_gone_has_no_digest():
+    with pytest.raises(StageError, match=r"a/run.bag: cannot be read \(No such file"):
+        provenance.digest_recordings(("a/run.bag",))

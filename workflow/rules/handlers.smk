@@ -8,6 +8,7 @@ from scanplan.project.run import (
     foreign_settings,
     run_lock,
     run_outcome,
+    run_places,
     slurm_jobs,
 )
 
@@ -91,11 +92,24 @@ def tell_results():
             tell(run_outcome.describe_results(name))
 
 
+def sources_of_given():
+    """The files that the given datasets' results are made of, as far as a user gave them."""
+    for dataset in GIVEN.values():
+        yield from () if dataset.building else dataset.recordings
+        yield from filter(None, [dataset.corrections, dataset.building])
+
+
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process and not IS_MODULE:
-    or_end(run_lock.check_places, GIVEN)
+    or_end(run_places.check_places, GIVEN)
+    or_end(run_places.check_dates, GIVEN, sources_of_given())
     or_end(foreign_settings.check_foreign_settings, os.environ)
     or_end(run_lock.lock_folder).close()
+    run_lock.release_results(
+        or_end(
+            run_lock.lock_results, [n for n in GIVEN if os.path.isdir(f"results/{n}")]
+        )
+    )
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 
@@ -140,7 +154,7 @@ def tell_overview():
 
 
 onstart:
-    or_end(THIS_RUN.begin)
+    or_end(THIS_RUN.begin, GIVEN)
     free_rate_of_jobs()
     if is_on_slurm():
         or_end(end_older_jobs)

@@ -15,7 +15,7 @@ from scanplan.project import texts, user_file
 POSES_FILE = "poses.tum"
 SCANS_FOLDER = "scans"
 ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
-_PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>")
+_PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 
 

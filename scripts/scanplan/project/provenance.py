@@ -117,7 +117,13 @@ def _recorded_sources(name: str) -> list[str]:
     note = _note_of(name)
     if not note.is_file() or _is_lone(note):
         return []
-    return note.read_text(encoding="utf-8").splitlines()
+    try:
+        return note.read_text(encoding="utf-8").splitlines()
+    except UnicodeDecodeError:
+        raise StageError(
+            f"{note}: is no text in UTF-8: it does not say what the results beside it were made"
+            f" of; move results/{name} away, or remove {note} to keep them"
+        ) from None
 
 
 def _is_lone(note: Path) -> bool:
@@ -133,13 +139,24 @@ def digest_recordings(files: tuple[str, ...]) -> str:
 
     A file that is replaced by an older one has other bytes there: an index, counts and stamps. Its
     time alone would not tell, as copies keep it.
+
+    Raises
+    ------
+    StageError
+        If one is no longer there, or cannot be read.
     """
     digest = hashlib.sha256()
     for file in map(Path, files):
-        size = file.stat().st_size
-        digest.update(f"{file.name} {size}\n".encode())
-        with file.open("rb") as content:
-            digest.update(content.read(io.DEFAULT_BUFFER_SIZE))
-            content.seek(max(0, size - io.DEFAULT_BUFFER_SIZE))
-            digest.update(content.read())
+        try:
+            size = file.stat().st_size
+            digest.update(f"{file.name} {size}\n".encode())
+            with file.open("rb") as content:
+                digest.update(content.read(io.DEFAULT_BUFFER_SIZE))
+                content.seek(max(0, size - io.DEFAULT_BUFFER_SIZE))
+                digest.update(content.read())
+        except OSError as error:
+            raise StageError(
+                f"{file}: cannot be read ({error.strerror}), and could when the run began; put it"
+                " back, the same command goes on from here"
+            ) from None
     return digest.hexdigest()

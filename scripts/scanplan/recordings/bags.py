@@ -264,6 +264,8 @@ class _explain_faults:  # noqa: N801 -- a context like those of functions, enter
 
 
 def _remedy(path: Path, error: Exception) -> str:
+    if not path.exists():
+        return "put it back; the same command goes on from here"
     if isinstance(error, SerdeError):
         return (
             "the message is damaged, or (ROS 2) set input.ros2_release to the release that"

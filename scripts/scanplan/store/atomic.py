@@ -6,7 +6,7 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import psutil
@@ -15,6 +15,8 @@ from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+# what a disk, or a network between it and this computer, fails with
+_BROKEN = (errno.EIO, errno.ESTALE, errno.EREMOTEIO, errno.ETIMEDOUT, errno.ENOTCONN)
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.EEXIST)
 _WRITER = re.compile(r"\.(\d+)\.part")
 _unfinished: set[Path] = set()
@@ -87,8 +89,10 @@ def scratch_file(path: FilePath) -> Iterator[Path]:
         with explain_unwritable(path):
             yield temporary
     finally:
-        temporary.unlink(missing_ok=True)
         _unfinished.discard(temporary)
+        # where nothing can be removed, what kept it from being written is told
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -102,7 +106,7 @@ def explain_unwritable(path: FilePath) -> Iterator[None]:
     except OSError as error:
         places = {str(path), str(Path(path).parent), *map(str, _unfinished)}
         is_of_place = error.errno in _REFUSED and str(error.filename) in places
-        if error.errno not in _FULL and not is_of_place:
+        if error.errno not in (*_FULL, *_BROKEN) and not is_of_place:
             raise
         raise describe_unwritable(path, error) from None
 
@@ -110,6 +114,8 @@ def explain_unwritable(path: FilePath) -> Iterator[None]:
 def describe_unwritable(path: FilePath, error: OSError) -> StageError:
     """Return what to raise where the system refuses to write to a file or a folder."""
     remedy = "make it a place that can be written to, or move away what stands there"
+    if error.errno in _BROKEN:
+        remedy = "the disk or the way to it fails: check it; the same command goes on from here"
     if error.errno in _FULL:
         remedy = _describe_room(Path(path))
     return StageError(f"{path}: cannot be written ({os.strerror(error.errno or 0)}); {remedy}")
@@ -139,7 +145,8 @@ def write_bytes(path: FilePath, content: bytes) -> None:
 def discard_unfinished() -> None:
     """Remove the temporary files of this process; for one that is about to end itself."""
     for temporary in list(_unfinished):
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
 
 
 def is_process_alive(pid: int) -> bool:
@@ -155,7 +162,8 @@ def remove_leftovers(folder: Path, pattern: str = "**/.*.part*") -> None:
     for leftover in folder.glob(pattern):
         writer = _WRITER.search(leftover.name)
         if writer and not is_process_alive(int(writer[1])):
-            leftover.unlink(missing_ok=True)
+            with suppress(OSError):
+                leftover.unlink(missing_ok=True)
 
 
 def _sync(path: Path) -> None:

@@ -7,7 +7,6 @@ with its process.
 import fcntl
 import os
 import signal
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable
@@ -69,31 +68,49 @@ def _state_of(file: Path) -> _State:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def check_places(names: Iterable[str]) -> None:
-    """Refuse to begin where a folder of results, or of what goes with them, cannot be written to.
+def lock_results(names: Iterable[str]) -> list[int]:
+    """Lock the folders of some datasets' results, which runs in several folders may share by links.
 
     Parameters
     ----------
     names : iterable of str
-        Of the datasets.
+        Folders that are not there yet are made.
+
+    Returns
+    -------
+    list of int
+        Descriptors; a lock is released when its own is closed, and when its process ends.
 
     Raises
     ------
     StageError
+        If a run at work in another folder holds one.
     """
-    of_all = [Path(name) for name in ("results", "logs", "benchmarks", ".snakemake")]
-    of_each = [place / name for name in names for place in of_all[:3]]
-    for folder in (Path(), *of_all, *of_each):
-        # what is not there yet is made where another was tried
-        if os.path.lexists(folder):
-            try:
-                tempfile.TemporaryFile(dir=folder).close()
-            except OSError as error:
-                raise atomic.describe_unwritable(folder, error) from None
-    for folder in of_each:
-        for path in folder.rglob("*"):
-            if path.is_symlink() and not path.exists():
-                raise StageError(f"{path}: is a link that leads nowhere; remove it")
+    held: list[int] = []
+    for folder in (Path("results", name) for name in names):
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            held.append(os.open(folder, os.O_RDONLY))
+        except OSError as error:
+            raise atomic.describe_unwritable(folder, error) from None
+        try:
+            fcntl.flock(held[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            release_results(held)
+            raise StageError(
+                f"{folder}: another run, started in another folder, is at work on it (it is"
+                f" {folder.resolve()}); wait for it or stop it"
+            ) from None
+        except OSError:
+            # over a network folders may have no locks; that of the working folder is held
+            continue
+    return held
+
+
+def release_results(held: Iterable[int]) -> None:
+    """Give up what `lock_results` has locked."""
+    for descriptor in held:
+        os.close(descriptor)
 
 
 class FolderRun:
@@ -113,14 +130,20 @@ class FolderRun:
         self._began_s = time.monotonic()
         self._older_logs: dict[Path, _State] = {}
         self._lock: TextIO | None = None
+        self._results: list[int] = []
 
-    def begin(self) -> None:
-        """Lock the folder and begin to watch for signals.
+    def begin(self, names: Iterable[str] = ()) -> None:
+        """Lock the folder and some datasets' results, and begin to watch for signals.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Of the datasets whose results are locked.
 
         Raises
         ------
         StageError
-            If another run is at work in the folder.
+            If another run is at work in the folder, or on these results.
         """
         self._began_s = time.monotonic()
         self._older_logs = {log: _state_of(log) for log in Path("logs").rglob("*.log")}
@@ -130,12 +153,15 @@ class FolderRun:
         for number in (signal.SIGINT, signal.SIGTERM):
             self._note_signal(number)
         self._lock = lock_folder()
+        self._results = lock_results(names)
 
     def end(self) -> None:
         """Release the folder, for a process that goes on."""
         if self._lock is not None:
             self._lock.close()
             self._lock = None
+        release_results(self._results)
+        self._results = []
         interrupts.prepare_children()
 
     def elapsed(self) -> str:

@@ -13,6 +13,9 @@ INDEX = "its index is damaged"
 MESSAGES = "some of its messages are damaged"
 """What is wrong where it fails at the messages."""
 
+GONE = "it is no longer there"
+"""What is wrong with one that was there when the run began."""
+
 _MCAP_MAGIC = b"\x89MCAP0\r\n"
 _SQLITE_MAGIC = b"SQLite format 3\0"
 _BEGINNING = "its beginning is overwritten"
@@ -33,6 +36,8 @@ def describe_fault(path: Path, error: Exception, part: str) -> str:
         `INDEX` or `MESSAGES`: what is damaged where nothing more is found.
     """
     text = " ".join(str(error).split())
+    if not path.exists():
+        return GONE
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     if type(error).__name__ == "ReaderError" and _TELLING.search(text):
