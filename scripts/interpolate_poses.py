@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from scanplan.project import provenance
 from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import lidar_odometry, pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
@@ -24,6 +25,7 @@ def interpolate_poses(
     max_gap_s: float,
     max_speed_m_s: float = np.inf,
     moved: FilePath | None = None,
+    made_of: str = "",
     **reading: Any,
 ) -> None:
     """Write the candidates for registration with interpolated poses, and the sensor's motion.
@@ -40,6 +42,8 @@ def interpolate_poses(
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
         motion.parquet, to write. By it scans are candidates whose points are moved well.
+    made_of : str
+        Digest of the files, which all tables of the dataset are to state.
     **reading
         Keywords of `survey.open_survey`, but for how many clouds may be damaged: few are read
         here, so that `register_scans` counts them.
@@ -61,13 +65,15 @@ def interpolate_poses(
             found = found.add(contradictions=resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
-        found = found.add(contradictions=candidates.describe_standstill(pose, covered))
+        still = candidates.describe_standstill(pose, covered)
         is_steady = np.ones(len(t_ns), bool)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = time_check.check_point_times(survey, motion)
             notes = {schemas.OF_POSES: json.dumps(motion.of_poses)}
-            tables.write_table(moved, schemas.MOTION, motion.columns(), notes=notes)
+            tables.write_table(
+                moved, schemas.MOTION, motion.columns(), notes=notes, made_of=made_of
+            )
             is_moved = survey.sweep_times is not None and motion.time_scale > 0
             if survey.pose_kind == pose_kind.ESTIMATED and is_moved:
                 is_steady = lidar_odometry.find_steady(survey.pose_edges()[0], motion, t_ns)
@@ -79,8 +85,8 @@ def interpolate_poses(
         pose_kind.NOTE: survey.pose_kind,
         schemas.N_RECORDED: str(len(t_ns)),
     }
-    tables.write_table(output, schemas.POSES, columns, notes=notes)
-    for sentence in (*found.sentences, *gaps):
+    tables.write_table(output, schemas.POSES, columns, notes=notes, made_of=made_of)
+    for sentence in (*found.sentences, *gaps, *still):
         log.log_warning(f"interpolate_poses: {sentence}")
     n_covered = int(covered[chosen].sum())
     log.log_line(
@@ -135,6 +141,7 @@ if __name__ == "__main__":
             snakemake.input.recordings,
             snakemake.output.poses,
             moved=snakemake.output.motion,
+            made_of=provenance.digest_recordings(tuple(snakemake.input.recordings)),
             **snakemake.params.settings,
             **snakemake.params.reading,
         )

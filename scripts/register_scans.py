@@ -4,12 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
+from scanplan.project import provenance
 from scanplan.registration import contradictions, gate_shares, mapping, results
 from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, workers
-from scanplan.store import doubts, scan_cache, schemas, tables
+from scanplan.store import doubts, lineage, scan_cache, schemas, tables
 from scanplan.types import FilePath, FloatArray, IntArray
 
 
@@ -24,6 +25,7 @@ def register_scans(
     settings: Mapping[str, Any],
     moved: FilePath | None = None,
     chunks: Sequence[chunk_files.ChunkFiles] = (),
+    made_of: str = "",
     threads: int = 1,
 ) -> None:
     """Write the retained scans in the map frame, every candidate's result, and the constraints.
@@ -45,9 +47,12 @@ def register_scans(
         motion.parquet: how the sensor moved. Without it scans are not deskewed.
     chunks : sequence of chunk_files.ChunkFiles, optional
         Of a long survey: what its chunks' jobs have registered, instead of the recordings.
+    made_of : str
+        Digest of the recordings as they are now, which has to be that of the poses.
     threads : int
         Cores to use; the result does not depend on it.
     """
+    lineage.check_recordings(poses, made_of)
     limits = registration_settings(settings)
     t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
     with (
@@ -82,7 +87,11 @@ def register_scans(
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, t_ns, verdicts)
     told = doubts.read_doubts(poses, schemas.POSES).add(
-        found.damage, contradictions.find_misfit(verdicts, is_odometry=survey.is_odometry)
+        found.damage,
+        [
+            *contradictions.find_standstill(survey.priors, verdicts),
+            *contradictions.find_misfit(verdicts, is_odometry=survey.is_odometry),
+        ],
     )
     if constraints is not None:
         told = told.add(contradictions=constraints.doubts)
@@ -127,5 +136,6 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             moved=snakemake.input.motion,
             chunks=[chunk_files.ChunkFiles(*files) for files in zip(*of_chunks, strict=True)],
+            made_of=provenance.digest_recordings(tuple(snakemake.input.recordings)),
             threads=snakemake.threads,
         )

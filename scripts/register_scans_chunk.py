@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from scanplan.project import provenance
 from scanplan.registration import results
 from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import log, workers
-from scanplan.store import scan_cache
+from scanplan.store import lineage, scan_cache
 from scanplan.types import FilePath
 
 
@@ -20,6 +21,7 @@ def register_scans_chunk(
     reading: Mapping[str, Any],
     settings: Mapping[str, Any],
     moved: FilePath | None = None,
+    made_of: str = "",
     threads: int = 1,
 ) -> None:
     """Write what `register_scans` needs of a chunk instead of the recordings.
@@ -40,9 +42,12 @@ def register_scans_chunk(
         Section `registration` of the settings.
     moved : path-like, optional
         motion.parquet: how the sensor moved. Without it scans are not deskewed.
+    made_of : str
+        Digest of the recordings as they are now, which has to be that of the poses.
     threads : int
         Cores to use; the result does not depend on it.
     """
+    lineage.check_recordings(poses, made_of)
     with (
         scan_cache.open_scan_cache(files.points) as raw,
         scan_cache.open_scan_cache(files.thinned) as thinned,
@@ -74,5 +79,6 @@ if __name__ == "__main__":
             reading=snakemake.params.reading,
             settings=snakemake.params.settings,
             moved=snakemake.input.motion,
+            made_of=provenance.digest_recordings(tuple(snakemake.input.recordings)),
             threads=snakemake.threads,
         )

@@ -45,6 +45,20 @@ def test_scans_that_do_not_fit_are_doubted(kept, rejected, empty, is_doubted):
         assert found[0].startswith("only 16 of 20 scans fit one another")
 
 
+@pytest.mark.parametrize(
+    ("moved_m", "rejected", "is_doubted"), [(0.0, 2, True), (0.0, 0, False), (0.01, 2, False)]
+)
+def test_scans_that_do_not_fit_where_the_sensor_is_said_to_stand_are_doubted(
+    moved_m, rejected, is_doubted
+):
+    priors = np.tile(np.eye(4), (6, 1, 1))
+    priors[2, 0, 3] = moved_m
+    priors[3] = np.nan
+    found = of_registration.find_standstill(priors, verdicts(6 - rejected, rejected))
+    assert bool(found) == is_doubted
+    assert not found or ("2 scans do not fit" in found[0] and "input.pose_topic" in found[0])
+
+
 def rays_at(xy_m):
     xyz_m = np.column_stack([xy_m, np.ones(len(xy_m))])
     return SimpleNamespace(xyz_m=xyz_m, planar=True, scan_ids=[0])

@@ -30,7 +30,7 @@ HOMES = {
         "exports/bag_writer.py",
         "lab/simulation/",
     ),
-    "pyarrow": ("store/tables.py", "store/parquet.py", "store/arrow_arrays.py"),
+    "pyarrow": ("store/tables.py", "store/parquet.py", "store/arrow_arrays.py", "store/lineage.py"),
     "open3d": (
         "extraction/iterative_ransac.py",
         "recordings/scan_folder.py",

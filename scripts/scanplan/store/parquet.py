@@ -13,7 +13,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from scanplan.errors import MORE_MEMORY, StageError, lacks_memory
-from scanplan.store import arrow_arrays, atomic
+from scanplan.store import arrow_arrays, atomic, lineage
+from scanplan.store.lineage import MADE_OF
 from scanplan.store.schemas import Schema
 from scanplan.types import Array, FilePath
 
@@ -22,7 +23,7 @@ RERUN = "delete it and run again"
 _MAGIC = b"PAR1"
 _N_ROWS = "scanplan_rows"
 _OF_OLDER_VERSIONS = ("scanplan_notes_crc32", "scanplan_counts_rows")
-_STATED = frozenset({"table", "version", "counted", "notes_crc32"})
+_STATED = frozenset({"table", "version", "counted", "notes_crc32", MADE_OF})
 _OWN_NOTES = ("scanplan", "geo", "ARROW:schema", _N_ROWS, *_OF_OLDER_VERSIONS)
 
 
@@ -40,11 +41,12 @@ def open_writer(
     extra: Mapping[str, str] | None = None,
     *,
     compression: str = "zstd",
+    made_of: str = "",
 ) -> Iterator[Callable[..., None]]:
     """Write a file of a schema, whole or not at all, with further metadata.
 
     It states how many rows were written to it, so that ones that another program took out are
-    missed.
+    missed; and what recordings it was made of: `made_of`, or what the poses of its dataset state.
 
     Yields
     ------
@@ -52,7 +54,10 @@ def open_writer(
         `write_rows(table, row_group_size=None)`, for one table after the other.
     """
     notes = dict(extra or {})
-    form = arrow_schema(schema).with_metadata(_file_metadata(schema, notes) | notes)
+    if not (made_of or schema.outlives):
+        made_of = lineage.find_made_of(path)[1]
+    own = _file_metadata(schema, notes, made_of)
+    form = arrow_schema(schema).with_metadata(own | notes)
     floats = [n for n, t in schema.columns.items() if t.startswith("float")]
     with (
         atomic.replace_file(path) as temporary,
@@ -76,10 +81,12 @@ def open_writer(
         writer.add_key_value_metadata({_N_ROWS: str(n_rows)})
 
 
-def _file_metadata(schema: Schema, notes: Mapping[str, str]) -> dict[str, str]:
+def _file_metadata(schema: Schema, notes: Mapping[str, str], made_of: str) -> dict[str, str]:
     """Return the file's own metadata: our schema, and the description that GeoParquet asks for."""
     # programs that write a table anew keep that rows are counted, and not the number itself
     stated = {**_identity(schema), "counted": True, "notes_crc32": _checksum(notes)}
+    if made_of:
+        stated[MADE_OF] = made_of
     metadata = {"scanplan": json.dumps(stated)}
     if schema.geometry:
         column = {"encoding": "WKB", "geometry_types": [], "crs": None}
@@ -173,6 +180,8 @@ def _check_schema(file: pq.ParquetFile, schema: Schema, path: FilePath) -> None:
             f"{path}: is {identity if stated else 'no table of scanplan'}, expected {schema.name}"
             f" version {schema.version}; {RERUN}"
         )
+    if not schema.outlives:
+        lineage.check_made_of(path, str(stated.get(MADE_OF, "")))
     if not file.schema_arrow.equals(arrow_schema(schema)):
         raise StageError(
             f"{path}: columns {file.schema_arrow.names} are not those of {schema.name}; {RERUN}"

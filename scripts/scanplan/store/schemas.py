@@ -32,6 +32,8 @@ class Schema:
         The columns that the rows are strictly sorted by.
     geometry : bool
         Whether the column `geometry` holds WKB: the file is GeoParquet then.
+    outlives : bool
+        Whether a table is kept when a dataset is recorded anew, and so states no recordings.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Schema:
     columns: dict[str, str]
     sorted_by: tuple[str, ...]
     geometry: bool = False
+    outlives: bool = False
 
 
 POSES = Schema(
@@ -360,6 +363,7 @@ KNOWN_ELEMENTS = Schema(
     {"kind": "string", "global_id": "string", "geometry": "binary"},
     ("kind", "global_id"),
     geometry=True,
+    outlives=True,
 )
 """All elements that plans of a dataset ever had, where each was when it was first seen.
 

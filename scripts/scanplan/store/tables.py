@@ -26,6 +26,7 @@ def write_table(
     *,
     allow_empty: bool = False,
     notes: Mapping[str, str] | None = None,
+    made_of: str = "",
 ) -> None:
     """Write a table, whole or not at all.
 
@@ -39,6 +40,8 @@ def write_table(
         Whether zero rows are an answer (no wall found) and not a mistake.
     notes : dict of str to str, optional
         What the file says beside its rows, by name; see `read_note`.
+    made_of : str
+        Digest of the recordings, which tables of a dataset that has poses take from there.
 
     Raises
     ------
@@ -55,7 +58,7 @@ def write_table(
     arrays = [arrow_arrays.to_arrow(columns[n], form.field(n).type) for n in schema.columns]
     table = pa.Table.from_arrays(arrays, schema=form)
     parquet.check_rows(table, schema, path, allow_empty, ValueError)
-    with parquet.open_writer(path, schema, notes) as write_rows:
+    with parquet.open_writer(path, schema, notes, made_of=made_of) as write_rows:
         write_rows(table)
 
 
@@ -90,6 +93,12 @@ def read_table(
     with parquet.open_file(path, schema) as file:
         table = file.read(columns=None if columns is None else list(columns))
     parquet.check_rows(table, schema, path, allow_empty, StageError)
+    return {name: arrow_arrays.to_numpy(table[name]) for name in table.column_names}
+
+
+def no_rows(schema: schemas.Schema) -> dict[str, Array]:
+    """Return the columns of a table of a schema that has no rows."""
+    table = parquet.arrow_schema(schema).empty_table()
     return {name: arrow_arrays.to_numpy(table[name]) for name in table.column_names}
 
 
