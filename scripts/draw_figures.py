@@ -7,6 +7,7 @@ longer than a figure, and two of them show the same points.
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from scanplan.report import figures, registration_figure, top_view, validation_figure
@@ -28,6 +29,7 @@ def draw_figures(
     made : dict of str to path-like
         `scans`, `registration`, `edges` and `crispness` of the registration; `selection`, the
         plan's ordering; `faces`, `elements` and `rays` of plan/, the latter two of its validation.
+        `crispness`, or these two, are empty lists where their stage failed.
     outputs : dict of str to path-like
         To write: `registration`, the audit of the registration; `scans`, where they were taken and
         which are selected (thesis, figure 5.9); `walls`, the plan's faces over the points of the
@@ -64,13 +66,17 @@ def _draw_registration(
 ) -> Figure:
     """Draw the track, every scan's verdict, and how well neighbours fit."""
     links = tables.read_table(made["edges"], schemas.EDGES, _LINKS, allow_empty=True)
-    thickness = tables.read_table(made["crispness"], schemas.CRISPNESS, ["poses", "sigma_m"])
-    sigma_m = dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True))
+    sigma_m: dict[str, float] = {}
+    if made["crispness"]:
+        thickness = tables.read_table(made["crispness"], schemas.CRISPNESS, ["poses", "sigma_m"])
+        sigma_m = dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True))
     return registration_figure.draw_registration_figure(points_xy_m, poses, links, sigma_m)
 
 
 def _draw_validation(made: Mapping[str, FilePath]) -> Figure:
     """Draw where rays of scans left out of the plan ended, and whether the plan explains it."""
+    if not made["elements"]:
+        return _draw_unvalidated(made)
     judged = tables.read_table(made["elements"], schemas.VALIDATION)
     notes = tables.read_notes(made["elements"], schemas.VALIDATION)
     rays = tables.read_table(made["rays"], schemas.VALIDATION_RAYS, allow_empty=True)
@@ -79,6 +85,16 @@ def _draw_validation(made: Mapping[str, FilePath]) -> Figure:
     title = f"{judged['share'][-1]:.1%} of {n_rays:,} rays of {n_scans:,} scans are as predicted"
     absent = notes.get("absent", "")
     return validation_figure.draw_validation_figure(judged, rays, absent or title)
+
+
+def _draw_unvalidated(made: Mapping[str, FilePath]) -> Figure:
+    """Draw the faces of the plan, of which nothing is known."""
+    faces = tables.read_table(made["faces"], schemas.FACES)
+    n_faces = len(faces["face"])
+    unknown = {"share": np.full(n_faces, np.nan), "kind": np.full(n_faces, "face")}
+    rays = tables.no_rows(schemas.VALIDATION_RAYS)
+    title = "not validated: the stage that does it failed"
+    return validation_figure.draw_validation_figure(faces | unknown, rays, title)
 
 
 if __name__ == "__main__":

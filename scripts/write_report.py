@@ -18,6 +18,7 @@ from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, Settings
 
+_FAILED = "the stage that works it out failed"
 _NOT_SIZED = (".svg", ".html", ".txt")
 
 
@@ -37,10 +38,10 @@ def write_report(
     ----------
     files : dict of str to path-like, or list of path-like
         `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation`,
-        `confidence`, `questions`, `standpoints` of plan/; `scans`, `selection`, `poses`,
-        `registration`; `page` (templates, CSS, JavaScript); `figures`; `evaluation` (plan.parquet
-        and walls.parquet, as far as they are known); `recordings`; `results`; `corrections`, if
-        there are any.
+        `confidence`, `questions`, `standpoints` of plan/, the latter four an empty list each where
+        their stage failed; `scans`, `selection`, `poses`, `registration`; `page` (templates, CSS,
+        JavaScript); `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they are
+        known); `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
     name : str
@@ -103,11 +104,7 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
         chosen=chosen,
         n_recorded=int(tables.read_note(files["poses"], schemas.POSES, schemas.N_RECORDED)),
         prediction=_read_prediction(files["validation"]),
-        visit=VisitFacts(
-            tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True),
-            tables.read_table(files["standpoints"], schemas.STANDPOINTS, allow_empty=True),
-            tables.read_note(files["questions"], schemas.QUESTIONS, "summary"),
-        ),
+        visit=_read_visit(files["questions"], files["standpoints"]),
         plan_measures=_read_if_known(evaluation.get("plan"), schemas.PLAN_EVALUATION),
         wall_measures=_read_if_known(evaluation.get("walls"), schemas.EVALUATION),
         is_drifting=pose_kind.is_drifting(
@@ -116,7 +113,26 @@ def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:
     )
 
 
-def _read_prediction(path: FilePath) -> PredictionFacts:
+def _read_visit(
+    questions: FilePath | list[FilePath], standpoints: FilePath | list[FilePath]
+) -> VisitFacts:
+    if isinstance(questions, list) or isinstance(standpoints, list):
+        return VisitFacts(
+            tables.no_rows(schemas.QUESTIONS),
+            tables.no_rows(schemas.STANDPOINTS),
+            f"no next visit is planned: {_FAILED}",
+        )
+    return VisitFacts(
+        tables.read_table(questions, schemas.QUESTIONS, allow_empty=True),
+        tables.read_table(standpoints, schemas.STANDPOINTS, allow_empty=True),
+        tables.read_note(questions, schemas.QUESTIONS, "summary"),
+    )
+
+
+def _read_prediction(path: FilePath | list[FilePath]) -> PredictionFacts:
+    if isinstance(path, list):
+        nan = float("nan")
+        return PredictionFacts(0, 0, nan, (nan, nan), nan, 0, 0, 0, _FAILED)
     elements = tables.read_table(path, schemas.VALIDATION)
     whole = {name: values[-1].item() for name, values in elements.items() if name != "kind"}
     return PredictionFacts(

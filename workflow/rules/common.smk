@@ -4,6 +4,7 @@ import os
 import sys
 from contextlib import redirect_stderr
 from functools import cache
+from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
@@ -45,6 +46,7 @@ from scanplan.project.provenance import (
     discard_lone_note,
     end_results,
 )
+from scanplan.project.run import optional_stages
 from scanplan.project.run.foreign_settings import keep_figures_ours
 from scanplan.project.run.terminal import tell
 from scanplan.project.settings import (
@@ -460,14 +462,63 @@ def all_settings(wildcards):
     return DATASETS[wildcards.dataset].settings
 
 
+# datasets and optional stages that have failed in this run, and those that cannot do without them
+LACKING = optional_stages.list_lacking(optional_stages.read_left_out())
+
+
+def is_lacking(file):
+    """Whether a file is not to be had in this run, as its stage failed or lacks one that did."""
+    for stage in workflow.rules if LACKING else ():
+        found = [match for output in stage.output if (match := output.match(file))]
+        failed = {(m["dataset"], Path(log).stem) for m in found for log in stage.log}
+        if failed & LACKING:
+            return True
+    return False
+
+
+def kept(files):
+    """Those of some files that are to be had in this run."""
+    return [file for file in files if not is_lacking(file)]
+
+
+def if_kept(file):
+    """An input function: a file of the job's dataset; none where its stage failed."""
+
+    def path(wildcards):
+        path = file.format(**wildcards)
+        return [] if is_lacking(path) else path
+
+    return path
+
+
 def results_of(name):
     """The plan of one dataset, and all that it is made of."""
-    return list_results(DATASETS[name])
+    return kept(list_results(DATASETS[name]))
 
 
 def comparison_of(name):
     """What one dataset's plan is compared with: all orderings, and the walls of all scans."""
-    return list_comparison(DATASETS[name], METHODS, compared_extractors(name))
+    return kept(list_comparison(DATASETS[name], METHODS, compared_extractors(name)))
+
+
+def all_of(name):
+    """All results of one dataset, whether they are to be had in this run or not."""
+    dataset = DATASETS[name]
+    return list_results(dataset) + list_comparison(
+        dataset, METHODS, compared_extractors(name)
+    )
+
+
+def results_of_building(wildcards):
+    """The files of all storeys together; none where a storey lacks what they are made of."""
+    files = BUILDING.list_results() if BUILDING else []
+    storeys = [storey.dataset for storey in BUILDING.storeys] if BUILDING else []
+    made_of = [
+        f"results/{storey}/plan/{file}"
+        for storey in storeys
+        for file in ("plan.ifc", "confidence.parquet")
+    ]
+    return files if kept(made_of) == made_of else []
 
 
 def of_storeys(file):

@@ -79,6 +79,12 @@ def comparison_is_up_to_date():
     return "comparison" in workflow.dag_settings.targets or not there
 
 
+def is_whole():
+    """Whether the run is to make all of the plan, or of the comparison."""
+    asked = workflow.dag_settings
+    return not asked.until and set(asked.targets) <= {"all", "comparison"}
+
+
 def tell_results():
     """Say what was made of the given datasets, and where it is."""
     if not has_files_here():
@@ -87,7 +93,7 @@ def tell_results():
     pages = {"thesis": "report", "thesis_more": "more"}
     for target in sorted(pages.keys() & set(targets)):
         tell(f"\nreport:  results/{RESERVED}/{pages[target]}.html")
-    if not workflow.dag_settings.until and set(targets) <= {"all", "comparison"}:
+    if is_whole():
         for name in GIVEN:
             tell(run_outcome.describe_results(name))
 
@@ -123,8 +129,7 @@ def benchmarks_of(name):
 
 def tell_overview():
     """Put what became of many datasets into one table and one page, failed ones among them."""
-    are_all_asked_for = set(workflow.dag_settings.targets) <= {"all", "comparison"}
-    if len(GIVEN) < 2 or not are_all_asked_for or not has_files_here():
+    if len(GIVEN) < 2 or not is_whole() or not has_files_here():
         return
     # takes a second to import, and is needed at the end alone
     from scanplan.report import overview
@@ -153,6 +158,30 @@ def tell_overview():
     tell(f"\nall      {page} (also {table})")
 
 
+def tell_failure():
+    """Say why stages failed."""
+    layers = {name: dataset.layers for name, dataset in DATASETS.items()}
+    layers[RESERVED] = ()
+    run_outcome.remove_unfinished(layers)
+    for line in run_outcome.describe_failure(THIS_RUN, layers, causes_in_slurm()):
+        tell(f"scanplan: {line}")
+
+
+def go_on_without_optional():
+    """Begin the run anew without stages that failed, if a plan does without all of them."""
+    if not is_whole() or THIS_RUN.interrupted or "snakemake.cli" not in sys.modules:
+        return
+    failed = {
+        (name, stage)
+        for name in [*DATASETS, RESERVED]
+        for stage in run_outcome.list_failed(name, THIS_RUN)
+    }
+    optional = {found for found in failed if found[1] in optional_stages.NEEDED_BY}
+    may_go_on = optional == failed or workflow.execution_settings.keep_going
+    if may_go_on and optional > optional_stages.read_left_out():
+        optional_stages.begin_without(optional)
+
+
 onstart:
     or_end(THIS_RUN.begin, GIVEN)
     free_rate_of_jobs()
@@ -160,34 +189,32 @@ onstart:
         or_end(end_older_jobs)
     for name, dataset in GIVEN.items():
         or_end(begin_results, name, dataset.source)
+        # made of what is lacking now, it would seem to be of this plan
+        for file in filter(is_lacking, all_of(name)):
+            Path(file).unlink(missing_ok=True)
 
 
 onsuccess:
     CONSOLE.end()
     for name in GIVEN:
         discard_lone_note(name)
-    targets = workflow.dag_settings.targets
-    is_whole = not workflow.dag_settings.until and set(targets) <= {
-        "all",
-        "comparison",
-    }
-    if is_whole and comparison_is_up_to_date():
+    if is_whole() and not LACKING and comparison_is_up_to_date():
         for name, dataset in GIVEN.items():
             or_end(end_results, name, dataset.source)
     tell_results()
     tell_overview()
+    if optional_stages.read_left_out():
+        tell_failure()
+        raise SystemExit(1)
     tell(f"took     {THIS_RUN.elapsed()}")
 
 
 onerror:
     CONSOLE.end()
+    go_on_without_optional()
     for name in GIVEN:
         discard_lone_note(name)
-    layers = {name: dataset.layers for name, dataset in DATASETS.items()}
-    layers[RESERVED] = ()
-    run_outcome.remove_unfinished(layers)
-    for line in run_outcome.describe_failure(THIS_RUN, layers, causes_in_slurm()):
-        tell(f"scanplan: {line}")
+    tell_failure()
     tell_overview()
     # whatever Snakemake would add says less
     raise SystemExit(THIS_RUN.exit_status)

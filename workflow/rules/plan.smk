@@ -135,7 +135,7 @@ rule export_plan:
         evidence=plan_table("evidence"),
         free=plan_table("free"),
         furniture=plan_table("furniture"),
-        confidence="results/{dataset}/plan/confidence.parquet",
+        confidence=if_kept("results/{dataset}/plan/confidence.parquet"),
     output:
         geojson="results/{dataset}/plan/plan.geojson",
         dxf="results/{dataset}/plan/plan.dxf",
@@ -180,7 +180,7 @@ for number, formats in enumerate(chosen_formats()):
             rooms=plan_table("rooms"),
             free=plan_table("free"),
             furniture=plan_table("furniture"),
-            confidence="results/{dataset}/plan/confidence.parquet",
+            confidence=if_kept("results/{dataset}/plan/confidence.parquet"),
             registration="results/{dataset}/registration.parquet",
             poses="results/{dataset}/poses.parquet",
         output:

@@ -35,7 +35,7 @@ def evaluated(*tables):
         folder = f"results/{wildcards.dataset}/evaluation"
         if DATASETS[wildcards.dataset].truth is None:
             return []
-        return [f"{folder}/{table}.parquet" for table in tables]
+        return kept(f"{folder}/{table}.parquet" for table in tables)
 
     return known
 

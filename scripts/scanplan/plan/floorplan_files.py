@@ -1,7 +1,8 @@
 """A floor plan read from the tables of a dataset's results."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -9,6 +10,16 @@ from scanplan.plan.floorplan import NUMBERS, FloorPlan, GeoReference, make_floor
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import read_doubts
 from scanplan.types import Columns, FilePath
+
+UNRATED = "not rated, as the stage that rates it failed"
+"""Why an element is doubtful where none could be rated."""
+# what was not seen is rated by none
+_UNSEEN: dict[str, float | str] = {
+    "p_true": 0.0,
+    "verify": True,
+    "doubt": "not seen",
+    "needs_person": False,
+}
 
 
 def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: float) -> FloorPlan:
@@ -18,7 +29,8 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     ----------
     files : dict of str to path-like
         `faces`, `walls`, `openings`, `rooms` and `free` of plan/, where they are wanted `furniture`
-        and `confidence`; `free` states the heights of floor and ceiling, and doubts.
+        and `confidence`, an empty list where the stage that makes it failed; `free` states the
+        heights of floor and ceiling, and doubts.
     name : str
     **assumed_m
         What `FloorPlan` assumes, where it is not the default.
@@ -44,8 +56,11 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         "free": read("free", schemas.FREE),
     }
     if "confidence" in files:
-        rated = tables.read_table(files["confidence"], schemas.CONFIDENCE, allow_empty=True)
-        parts = {table: _join_confidence(table, columns, rated) for table, columns in parts.items()}
+        rated, otherwise = _read_rated(files["confidence"])
+        parts = {
+            table: _join_confidence(table, columns, rated, otherwise)
+            for table, columns in parts.items()
+        }
     wanted = {}
     if "furniture" in files:
         wanted["furniture"] = read("furniture", schemas.FURNITURE)
@@ -66,7 +81,19 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     )
 
 
-def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
+def _read_rated(path: FilePath | Sequence[FilePath]) -> tuple[Columns, Mapping[str, float | str]]:
+    """Return `schemas.CONFIDENCE`, and what holds of an element that has no row there.
+
+    Where the stage that rates the plan failed, the workflow gives an empty list.
+    """
+    if isinstance(path, str | Path):
+        return tables.read_table(path, schemas.CONFIDENCE, allow_empty=True), _UNSEEN
+    return tables.no_rows(schemas.CONFIDENCE), _UNSEEN | {"p_true": np.nan, "doubt": UNRATED}
+
+
+def _join_confidence(
+    table: str, columns: Columns, rated: Columns, otherwise: Mapping[str, float | str]
+) -> Columns:
     """Return a table with the columns of `schemas.CONFIDENCE` of its elements."""
     if table not in NUMBERS:
         return columns
@@ -74,9 +101,5 @@ def _join_confidence(table: str, columns: Columns, rated: Columns) -> Columns:
     row_of = dict(zip(rated["number"][rows].tolist(), rows, strict=True))
     numbers = columns[NUMBERS[table]].tolist()
     known = np.array([row_of.get(number, -1) for number in numbers], np.int64)
-    # what was not seen is rated by none
-    added = {"p_true": np.append(rated["p_true"], 0.0)[known]}
-    added["verify"] = np.append(rated["verify"], True)[known]
-    added["doubt"] = np.append(rated["doubt"], "not seen")[known]
-    added["needs_person"] = np.append(rated["needs_person"], False)[known]
+    added = {name: np.append(rated[name], value)[known] for name, value in otherwise.items()}
     return {**columns, **added}

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan_files import UNRATED
 from scanplan.types import BoolArray, Columns, IntArray
 from scanplan.validation.confidence import NOT_CLOSED
 
@@ -63,6 +64,11 @@ def list_unrated(plan: FloorPlan) -> list[str]:
     known = plan.walls.get("p_true", np.zeros(1))
     if len(known) == 0 or np.isfinite(known).any():
         return []
+    if (plan.walls["doubt"] == UNRATED).all():
+        return [
+            "how likely elements are right is not known, as the stage that rates them failed: all"
+            " are to be verified"
+        ]
     return ["how likely elements are is not known, as no heights above the floor were seen"]
 
 

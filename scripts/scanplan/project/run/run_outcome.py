@@ -6,6 +6,7 @@ from pathlib import Path
 
 from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
+from scanplan.project.run import optional_stages
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
@@ -13,6 +14,7 @@ from scanplan.stage import bytecode
 from scanplan.store import atomic
 
 _DONE = " stage done"
+_MADE_WITHOUT = "all that does not need it is made; the same command tries it again"
 _OUTSIDE = "was ended from outside"
 
 
@@ -60,6 +62,21 @@ def describe_failure(
     return told
 
 
+def list_failed(name: str, run: FolderRun) -> list[str]:
+    """Return the stages of a dataset that failed in this run, as their logs are called."""
+    return [log.stem for log, _ in _read_failed(name, run)]
+
+
+def _read_failed(name: str, run: FolderRun) -> Iterator[tuple[Path, list[str]]]:
+    """Iterate over the logs, and their lines, of a dataset's stages that failed in this run."""
+    failed = {stage for dataset, stage in optional_stages.read_left_out() if dataset == name}
+    for log in sorted(Path("logs", name).glob("*.log")):
+        lines = log.read_text(errors="replace").splitlines()
+        is_of_run = log.stem in failed or run.has_written(log)
+        if is_of_run and not (lines and lines[-1].endswith(_DONE)):
+            yield log, lines
+
+
 def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
     """Iterate over the last errors of a dataset's stages that failed in this run.
 
@@ -70,18 +87,17 @@ def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[
     layers : sequence of settings.Layer
         The settings of the dataset.
     """
-    for log in sorted(Path("logs", name).glob("*.log")):
-        lines = log.read_text(errors="replace").splitlines()
-        if not run.has_written(log) or (lines and lines[-1].endswith(_DONE)):
-            continue
+    for log, lines in _read_failed(name, run):
+        left_out = (name, log.stem) in optional_stages.read_left_out()
+        rest = f"; {_MADE_WITHOUT}" if left_out else ""
         errors = [line.split(" ERROR ", 1)[1] for line in lines if " ERROR " in line]
         if errors:
             stage, _, fault = errors[-1].partition(": ")
-            yield f"{stage}: {locate_fault(fault, layers)}"
+            yield f"{stage}: {locate_fault(fault, layers)}{rest}"
         elif not run.interrupted:
             yield (
                 f"{log.stem}: {_OUTSIDE}, perhaps for want of memory or of space on the disk; its"
-                f" log is {log}"
+                f" log is {log}{rest}"
             )
 
 

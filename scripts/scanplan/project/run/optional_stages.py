@@ -1,0 +1,51 @@
+"""Stages that a plan does without: where one fails, the run goes on, and ends with its fault.
+
+A run that has ended for such faults alone begins anew as the same process, with the same command,
+and leaves out what those stages would make. Its own processes learn that from the environment. The
+next run, which knows nothing of it, tries them again, and makes anew what lacked their files.
+"""
+
+import os
+import sys
+from collections.abc import Iterable
+
+_LEFT_OUT = "SCANPLAN_LEFT_OUT"
+
+NEEDED_BY: dict[str, tuple[str, ...]] = {
+    "measure_crispness": (),
+    # nothing says what is to be settled
+    "validate_plan": ("plan_next_visit",),
+    "plan_next_visit": (),
+    "draw_figures": (),
+    "export_plan": (),
+    "export_files": (),
+    "export_cloud": (),
+    "evaluate_poses": (),
+    "evaluate_plan": (),
+    "draw_area": (),
+    "evaluate_walls": ("tabulate_seconds", "draw_evaluation"),
+    "tabulate_seconds": ("draw_evaluation",),
+    "draw_evaluation": (),
+}
+"""Optional stages, as their logs are called, and those that cannot do without what each makes."""
+
+
+def read_left_out() -> frozenset[tuple[str, str]]:
+    """Return the datasets and optional stages that failed in this run so far."""
+    words = os.environ.get(_LEFT_OUT, "").split()
+    return frozenset((dataset, stage) for dataset, _, stage in (w.partition("/") for w in words))
+
+
+def list_lacking(failed: Iterable[tuple[str, str]]) -> set[tuple[str, str]]:
+    """Return failed stages of datasets, and those that cannot do without them."""
+    lacking = set(failed)
+    return lacking | {(dataset, other) for dataset, stage in lacking for other in NEEDED_BY[stage]}
+
+
+def begin_without(failed: Iterable[tuple[str, str]]) -> None:
+    """Begin the run anew, in the place of this process, without some stages; does not return."""
+    words = sorted(f"{dataset}/{stage}" for dataset, stage in failed)
+    os.environ[_LEFT_OUT] = " ".join(words)
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])

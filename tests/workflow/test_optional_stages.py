@@ -1,0 +1,57 @@
+"""A stage that a plan does without spoils nothing where it fails, and is tried again."""
+
+import pytest
+
+from helpers.project_copy import Project
+
+pytestmark = pytest.mark.workflow
+
+RESULTS = {
+    *("plan/plan.geojson", "plan/plan.pdf", "plan/plan.dxf", "plan/plan.ifc"),
+    *("plan/next_visit.geojson", "figures/validation.svg", "figures/walls.svg"),
+    *("crispness.parquet", "plan/confidence.parquet", "report.html", "summary.txt"),
+}
+RAISES = "raise RuntimeError('on purpose')"
+# as the system ends one where memory is not enough
+IS_KILLED = "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"
+
+
+@pytest.fixture(scope="module")
+def project(project_root, tmp_path_factory):
+    project = Project(project_root, tmp_path_factory.mktemp("optional"))
+    planned = project.run()
+    assert planned.returncode == 0, planned.stderr
+    project.right = project.digests()
+    return project
+
+
+@pytest.mark.parametrize(
+    ("stage", "does", "lacking"),
+    [
+        ("measure_crispness", RAISES, {"crispness.parquet"}),
+        ("validate_plan", RAISES, {"plan/confidence.parquet", "plan/next_visit.geojson"}),
+        ("plan_next_visit", IS_KILLED, {"plan/next_visit.geojson"}),
+        ("export_files", RAISES, {"plan/plan.ifc"}),
+    ],
+)
+def test_all_else_is_made_where_a_stage_fails(project, stage, does, lacking):
+    script = project.folder / f"scripts/{stage}.py"
+    whole = script.read_text()
+    begins = "with log.log_to_file(snakemake.log[0]):\n"
+    script.write_text(whole.replace(begins, f"{begins}        {does}\n"))
+    run = project.run()
+    script.write_text(whole)
+    told = [line for line in run.stderr.splitlines() if line.startswith("scanplan: ")]
+    assert run.returncode == 1 and "Traceback" not in run.stderr + run.stdout
+    assert len(told) == 1 and told[0].startswith(f"scanplan: {stage}: "), run.stderr
+    assert run.stderr.splitlines()[-1] == told[0] and "tries it again" in told[0]
+    here = {name for name in RESULTS if (project.folder / "results/demo" / name).exists()}
+    assert here == RESULTS - lacking
+    report = (project.folder / "results/demo/report.html").read_text()
+    assert ("failed" in report) == bool(lacking & {"plan/next_visit.geojson"})
+
+
+def test_what_was_lacking_is_made_by_the_same_command(project):
+    again = project.run()
+    assert again.returncode == 0, again.stderr
+    assert project.digests() == project.right
