@@ -15,7 +15,7 @@ from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.stage import log
-from scanplan.store import atomic, registered_scans, schemas, tables, tum
+from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import Columns, FilePath, Settings
@@ -83,7 +83,9 @@ def export_files(
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
+        remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
+            sqlite_paths.check_sqlite_path(temporary, remedy)
             geopackage.write_geopackage(temporary, layers, t_ns)
 
 

@@ -1,6 +1,7 @@
 """Ctrl-C while a process still imports ends it in one line; Python runs this before all else.
 
-So does what a stage's imports raise. Both hold where this folder is on PYTHONPATH: `make run` puts
+So does what a stage's imports raise, and streams, warnings and homes are mended that it could not
+do with. All this holds where this folder is on PYTHONPATH: `make run` puts
 it there for Snakemake, and a run for its stages.
 """
 
@@ -13,7 +14,7 @@ _HERE = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
 _SCRIPTS = os.path.dirname(_HERE)  # noqa: PTH120
 
 sys.path.insert(0, _SCRIPTS)
-from scanplan import interrupts  # noqa: E402
+from scanplan import interrupts, surroundings  # noqa: E402
 
 sys.path.remove(_SCRIPTS)
 
@@ -39,6 +40,7 @@ def tell_fault(
         sys.__excepthook__(kind, error.with_traceback(trace), trace)
 
 
+surroundings.mend_surroundings()
 sys.excepthook = tell_fault
 # workers end with their stage, which is told when one ends by itself
 if "--multiprocessing-fork" not in sys.orig_argv:

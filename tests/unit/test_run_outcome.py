@@ -10,7 +10,7 @@ import pytest
 
 from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
-from scanplan.project.run import run_outcome
+from scanplan.project.run import memory_kills, run_outcome
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.settings import Layer
 
@@ -82,6 +82,20 @@ def test_a_stage_that_said_nothing_was_ended_from_outside():
     (line,) = failure()
     assert line.startswith("stage_a: was ended from outside") and line.endswith("stage_a.log")
     assert failure(interrupted=True) == [f"the run {INTERRUPTED}"]
+
+
+@pytest.mark.parametrize(("n_kills", "is_sure"), [(3, False), (4, True)])
+def test_a_stage_that_was_killed_for_memory_is_told_with_how_much_it_had(
+    monkeypatch, n_kills, is_sure
+):
+    write_log("stage_a", "12:00 INFO 5 scans\n")
+    run = FolderRun()
+    run.memory_kills = 3
+    monkeypatch.setattr(memory_kills, "count_memory_kills", lambda: n_kills)
+    monkeypatch.setattr(memory_kills, "measure_peak_mb", lambda: 2345)
+    (line,) = failure(run=run)
+    assert "2,345 MB" in line and "fewer cores" in line and "poses.keep_every" in line
+    assert ("by the system, for want of memory" in line) == is_sure
 
 
 def test_an_interrupted_stage_is_said_once_and_last():

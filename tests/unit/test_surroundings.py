@@ -1,99 +1,110 @@
-"""What stands around elements of a plan, in rooms small enough to count by hand."""
+"""What a process says is heard where any stream carries it; odd surroundings are mended."""
 
-import numpy as np
+import os
+import subprocess
+import sys
+from pathlib import Path
+
 import pytest
-import shapely
 
-from scanplan.plan import floorplan
-from scanplan.validation import surroundings
-from scanplan.validation.confidence_coefficients import COEFFICIENTS
-
-SQUARE_M = np.array(
-    [
-        [[0.0, 0.0], [4.0, 0.0]],
-        [[4.0, 0.0], [4.0, 4.0]],
-        [[4.0, 4.0], [0.0, 4.0]],
-        [[0.0, 4.0], [0.0, 0.0]],
-    ]
+ROOT = Path(__file__).resolve().parents[2]
+STARTUP = ROOT / "scripts/startup"
+SAYS = (
+    "import sys; print('fault', file=sys.stderr); print('result');"
+    "from scanplan import surroundings; print(surroundings.is_unheard(), file=open('unheard', 'w'))"
 )
-INWARD = np.array([[0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]])
-ROOM = np.array([shapely.box(0, 0, 4, 4)], object)
+LED = "scanplan: the error output cannot be written to (%s), and is here"
 
 
-def test_the_walls_of_a_room_meet_at_both_ends_and_one_in_its_middle_at_none():
-    lines_m = np.concatenate([SQUARE_M, [[[1.0, 2.0], [3.0, 2.0]]]])
-    counts = surroundings.count_joined_ends(lines_m, lines_m, same=True)
-    assert counts.tolist() == [2, 2, 2, 2, 0]
-
-
-def test_a_door_joins_the_wall_on_either_side():
-    door_m = np.array([[[1.0, 0.0], [2.0, 0.0]]])
-    beside_m = np.array([[[0.0, 0.0], [0.95, 0.0]], [[2.5, 0.0], [4.0, 0.0]]])
-    assert surroundings.count_joined_ends(door_m, beside_m, same=False).tolist() == [1]
-    assert surroundings.count_joined_ends(door_m, np.empty((0, 2, 2)), same=False).tolist() == [0]
+def shell(line, folder, python="", **env):
+    """Run a line of a shell in which $PY is Python with our startup; return the run."""
+    env = os.environ | {
+        "PYTHONPATH": f"{STARTUP}:{ROOT / 'scripts'}",
+        "PY": sys.executable,
+        "SAYS": python or SAYS,
+        **env,
+    }
+    return subprocess.run(
+        ["bash", "-c", line], cwd=folder, env=env, capture_output=True, text=True, check=False
+    )
 
 
 @pytest.mark.parametrize(
-    ("offset_m", "looks", "share"),
-    [(0.2, 1, 0.5), (0.2, -1, 0.0), (0.5, 1, 0.0)],
-    ids=["doubled", "the other side of a thin wall", "too far"],
+    ("streams", "output", "errors", "unheard"),
+    [
+        ("", ["result"], ["fault"], "False"),
+        (">&-", [], ["fault", "result"], "False"),
+        ("2>&-", [LED % "closed", "fault", "result"], [], "False"),
+        (">/dev/full", [], ["fault", "result"], "False"),
+        ("2>/dev/full", [LED % "No space left on device", "fault", "result"], [], "False"),
+        (">/dev/full 2>/dev/full", [], [], "True"),
+        (">&- 2>&-", [], [], "True"),
+        (">&- 2>&- <&-", [], [], "True"),
+        (">/dev/full 2>&-", [], [], "True"),
+        ("2>/dev/full >&-", [], [], "True"),
+        (">&- 2>/dev/null", [], [], "False"),
+        ("2> >(exec true)", [LED % "Broken pipe", "fault", "result"], [], "False"),
+        # who closes the output has read enough of it
+        ("> >(exec true)", [], ["fault"], "False"),
+        ("2>&1 > >(exec true) | cat", ["fault"], [], "False"),
+        ("2>&1 | exec true", [], [], "True"),
+    ],
 )
-def test_a_face_before_another_that_looks_the_same_way_doubles_it(offset_m, looks, share):
-    lines_m = np.array([[[0.0, 0.0], [4.0, 0.0]], [[1.0, offset_m], [3.0, offset_m]]])
-    normals = np.array([[0.0, 1.0], [0.0, looks]])
-    np.testing.assert_allclose(surroundings.share_doubled(lines_m, normals)[0], share, atol=1e-9)
+def test_what_is_said_goes_where_it_is_heard(tmp_path, streams, output, errors, unheard):
+    # a reader that has gone is seen at the next line alone
+    command = '"$PY" -c "import time; time.sleep(0.3); $SAYS"'
+    run = shell(f"{command} {streams}", tmp_path)
+    assert run.stdout.splitlines() == output and run.stderr.splitlines() == errors
+    assert (tmp_path / "unheard").read_text().strip() == unheard
 
 
-def test_faces_that_go_on_along_one_line_double_nothing():
-    lines_m = np.array([[[0.0, 0.0], [2.0, 0.0]], [[1.9, 0.0], [4.0, 0.0]]])
-    normals = np.array([[0.0, 1.0], [0.0, 1.0]])
-    assert surroundings.share_doubled(lines_m, normals).tolist() == [0.0, 0.0]
-
-
-def test_a_wall_bounds_its_room_and_a_shelf_within_does_not():
-    lines_m = np.concatenate([SQUARE_M[:1], [[[1.0, 2.0], [3.0, 2.0]], [[2.0, 0.0], [2.0, 2.0]]]])
-    # of the last, which stands out from a wall, 0.15 of 2 m
-    np.testing.assert_allclose(surroundings.share_along(lines_m, ROOM), [1, 0, 0.075], atol=1e-3)
-    assert surroundings.share_along(lines_m, ROOM[:0]).tolist() == [0, 0, 0]
-
-
-def test_the_outline_of_a_room_with_three_of_four_walls_is_faced_by_three_quarters():
-    shares = surroundings.share_faced(ROOM, SQUARE_M[:3])
-    # the fourth side lies within 0.15 m of the ends of two
-    np.testing.assert_allclose(shares, [(12 + 0.3) / 16], atol=1e-3)
-
-
-def test_openings_that_overlap_do_not_stand_alone():
-    lines_m = np.array(
-        [[[0.0, 0.0], [1.0, 0.0]], [[0.3, 0.1], [1.3, 0.1]], [[5.0, 0.0], [6.0, 0.0]]]
+def test_a_stage_says_the_rest_to_its_log(tmp_path):
+    says = (
+        "import os, sys; from scanplan.stage import log\n"
+        "with log.log_to_file('logs/d/stage_a.log'):\n"
+        "    print('printed'); os.system('echo native >&2'); log.log_line('stage_a: logged')"
     )
-    assert surroundings.stand_alone(lines_m).tolist() == [0, 0, 1]
-    assert surroundings.stand_alone(lines_m[:1]).tolist() == [1]
-    assert surroundings.stand_alone(np.empty((0, 2, 2))).tolist() == []
+    run = shell('"$PY" -c "$SAYS" 2>/dev/full', tmp_path, says)
+    assert run.returncode == 0
+    said = (tmp_path / "logs/d/stage_a.log").read_text()
+    assert all(word in said for word in ("printed", "native", "stage_a: logged", "stage done"))
 
 
-def test_what_speaks_for_an_element_never_lowers_its_probability():
-    for table in floorplan.NUMBERS:
-        for of_feature in COEFFICIENTS[table]["features"].values():
-            assert of_feature["weight"] >= 0
+def test_warnings_are_no_errors(tmp_path):
+    says = "import warnings; warnings.warn('odd'); open('left'); print('on')"
+    (tmp_path / "left").touch()
+    run = shell('"$PY" -c "$SAYS"', tmp_path, says, PYTHONWARNINGS="error")
+    assert (run.stdout, run.stderr) == ("on\n", "")
 
 
-def test_a_corridor_is_broader_than_a_slip_as_narrow():
-    areas = np.array([shapely.box(0, 0, 2, 36), shapely.box(0, 0, 2, 4), shapely.box(0, 0, 3, 4)])
-    np.testing.assert_allclose(
-        surroundings.measure_breadth(areas), [np.sqrt(72) / 2, 2, 3], rtol=1e-3
-    )
+@pytest.mark.parametrize("home", ["/dev/null", "/nowhere/at/all", "file"])
+def test_caches_are_kept_in_the_working_folder_without_a_home(tmp_path, home):
+    (tmp_path / "file").touch()
+    says = "import os; print(os.environ.get('XDG_CACHE_HOME', ''))"
+    run = shell('unset XDG_CACHE_HOME; "$PY" -c "$SAYS"', tmp_path, says, HOME=home)
+    is_usable = home == "/nowhere/at/all" and os.access("/", os.W_OK)
+    assert run.stdout.strip() == ("" if is_usable else f"{tmp_path}/.snakemake/cache")
 
 
-def test_the_ground_beyond_a_door_is_a_square_on_the_side_of_no_room():
-    door_m = np.array([[[4.0, 0.0], [4.0, 1.0]]])
-    room = np.array([shapely.box(0, 0, 3.9, 3)])
-    sides_m = np.array([[0.1, -0.1]])
+def test_a_profile_that_is_nowhere_is_told(tmp_path):
+    run = shell('"$PY" -c "$SAYS"', tmp_path, SNAKEMAKE_PROFILE="nowhere")
+    (line,) = run.stderr.splitlines()
+    assert run.returncode == 1 and run.stdout == ""
+    assert line.startswith("scanplan: SNAKEMAKE_PROFILE=nowhere: ") and "unset" in line
+    (tmp_path / "nowhere").mkdir()
+    assert shell('"$PY" -c "$SAYS"', tmp_path, SNAKEMAKE_PROFILE="nowhere").returncode == 0
 
-    def share(*floor):
-        seen = shapely.union_all([shapely.box(*bounds) for bounds in floor])
-        return surroundings.share_floor_beyond(door_m, sides_m, room, seen)[0]
 
-    assert share((0, 0, 3.9, 3)) == 0
-    assert share((0, 0, 3.9, 3), (4.1, 0, 4.6, 1)) == pytest.approx(0.5)
-    assert share((4.0, -1, 9, 2)) == pytest.approx(1.0)
+@pytest.mark.parametrize(
+    ("enter", "said"),
+    [
+        (r"d=$'n\xff'; mkdir $d; cd $d", r"n\xff: the working folder has bytes"),
+        ("for i in {1..19}; do mkdir -p {a..a}%s; cd a%s; done" % (("x" * 199,) * 2), "above 3700"),
+        ("mkdir gone; cd gone; rmdir ../gone", "the working folder cannot be used"),
+    ],
+)
+def test_a_working_folder_of_no_use_is_told(tmp_path, enter, said):
+    run = shell(f'{enter}; "$PY" -c "$SAYS"', tmp_path)
+    (line,) = run.stderr.splitlines()[-1:]
+    assert run.returncode == 1 and line.startswith("scanplan: ") and said in line
+    assert run.stdout == "" and "Traceback" not in run.stderr

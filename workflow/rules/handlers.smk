@@ -207,6 +207,8 @@ onsuccess:
         tell_failure()
         raise SystemExit(1)
     tell(f"took     {THIS_RUN.elapsed()}")
+    if is_unheard():
+        raise SystemExit(1)
 
 
 onerror:

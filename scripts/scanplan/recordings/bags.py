@@ -25,6 +25,7 @@ from scanplan.recordings.integrity import fault_words, file_kind, stated_counts,
 from scanplan.recordings.messages import read_header
 from scanplan.recordings.rosbag1_messages import StoredMessage, iterate_messages
 from scanplan.recordings.salvage.salvaged_reader import SalvagedReader
+from scanplan.store import sqlite_paths
 from scanplan.types import FilePath
 
 RawMessage = bytes | StoredMessage
@@ -231,6 +232,8 @@ def _openable_name(path: Path, stack: ExitStack) -> Path:
             raise StageError(
                 f"{file}: SQLite cannot open names with #, ? or %; rename it, in metadata.yaml too"
             )
+    for file in [path] if path.suffix == ".db3" else databases:
+        sqlite_paths.check_sqlite_path(file, "move the recording")
     if not _URI_CHARACTERS & set(str(path)) or path.suffix in (".bag", ".mcap"):
         return path
     folder = stack.enter_context(tempfile.TemporaryDirectory())

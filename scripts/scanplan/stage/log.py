@@ -8,11 +8,11 @@ import signal
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sized
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO, TypeVar
 
-from scanplan import interrupts
+from scanplan import interrupts, surroundings
 from scanplan.errors import MORE_MEMORY, StageError, lacks_memory, show_controls
 from scanplan.geometry import fallbacks
 from scanplan.plain_types import FilePath
@@ -114,15 +114,21 @@ def _redirect_output(path: FilePath) -> Iterator[None]:
     os.dup2(target, 2)
     os.close(target)
     _screen = os.fdopen(os.dup(errors), "w", buffering=1)
+    mended = sys.stdout, sys.stderr
+    # where the disk of the log is full now there may be room later
+    sys.stdout, sys.stderr = map(surroundings.take_plain, mended)
     try:
         yield
     finally:
-        _flush()
+        with suppress(OSError):
+            _flush()
+        sys.stdout, sys.stderr = mended
         os.dup2(output, 1)
         os.dup2(errors, 2)
         os.close(output)
         os.close(errors)
-        _screen.close()
+        with suppress(OSError):
+            _screen.close()
         _screen = None
 
 
@@ -182,7 +188,9 @@ def log_warning(text: str) -> None:
 
 def _show(line: str) -> None:
     if _screen is not None and interrupts.WATCHED not in os.environ:
-        _screen.write(f"{show_controls(line)}\n")
+        # one that carries nothing is the run's to tell; the log has the line
+        with suppress(OSError):
+            _screen.write(f"{show_controls(line)}\n")
 
 
 def report_progress(

@@ -19,6 +19,7 @@ import psutil
 
 from scanplan import interrupts
 from scanplan.errors import StageError
+from scanplan.project.run.memory_kills import note_memory_kills
 from scanplan.store import atomic
 
 _State = tuple[int, ...]
@@ -122,11 +123,14 @@ class FolderRun:
         Whether Ctrl-C or a signal to end has reached it since. At a second Ctrl-C it ends at once.
     exit_status : int
         That of the process if the run fails.
+    memory_kills : int
+        How many processes had been killed for want of memory when it began.
     """
 
     def __init__(self) -> None:
         self.interrupted = False
         self.exit_status = 1
+        self.memory_kills = note_memory_kills()
         self._began_s = time.monotonic()
         self._older_logs: dict[Path, _State] = {}
         self._lock: TextIO | None = None

@@ -4,9 +4,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from scanplan.errors import MORE_MEMORY
 from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
-from scanplan.project.run import optional_stages
+from scanplan.project.run import memory_kills, optional_stages
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
@@ -95,10 +96,19 @@ def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[
             stage, _, fault = errors[-1].partition(": ")
             yield f"{stage}: {locate_fault(fault, layers)}{rest}"
         elif not run.interrupted:
-            yield (
-                f"{log.stem}: {_OUTSIDE}, perhaps for want of memory or of space on the disk; its"
-                f" log is {log}{rest}"
-            )
+            yield f"{log.stem}: {_explain_end(run)}; its log is {log}{rest}"
+
+
+def _explain_end(run: FolderRun) -> str:
+    """Return why a stage ended that has said nothing, as far as the system tells."""
+    peak = f"the largest process so far had {memory_kills.measure_peak_mb():,} MB"
+    lower = f"{MORE_MEMORY}, or take fewer scans (poses.keep_every)"
+    if memory_kills.count_memory_kills() > run.memory_kills:
+        return f"{_OUTSIDE} by the system, for want of memory ({peak}): {lower}"
+    return (
+        f"{_OUTSIDE}, perhaps for want of memory ({peak}) or of space on the disk; if of memory,"
+        f" {lower}"
+    )
 
 
 def remove_unfinished(names: Iterable[str]) -> None:
