@@ -174,8 +174,10 @@ def _check_working_folder() -> None:
 
 
 def _check_profile() -> None:
-    """Refuse a profile that Snakemake would not find, with the variable that names it."""
+    """Refuse a profile that Snakemake would not find; one of no name it would refuse itself."""
     name = os.environ.get("SNAKEMAKE_PROFILE", "")
+    if not name:
+        os.environ.pop("SNAKEMAKE_PROFILE", None)
     home = os.path.expanduser("~/.config")  # noqa: PTH111
     places = [f"{os.environ.get('XDG_CONFIG_HOME', home)}/snakemake", "/etc/xdg/snakemake"]
     # several are written in brackets

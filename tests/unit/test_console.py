@@ -110,6 +110,30 @@ def test_snakemakes_own_screen_shows_errors_that_no_stage_has_said(console):
     console.end()
 
 
+@pytest.mark.parametrize(
+    ("text", "shown", "said"),
+    [
+        (
+            "WorkflowError:\n    a is older\n    than b\n    rule",
+            1,
+            "(WorkflowError: a is older than b)",
+        ),
+        ("Traceback (most recent call last):\n  File x\nOSError: no\n", 0, "(OSError: no)"),
+    ],
+)
+def test_what_snakemake_ends_a_run_by_is_a_line_of_ours(console, file, text, shown, said):
+    logger, screen = logging.Logger("snakemake"), io.StringIO()
+    own = logging.StreamHandler(screen)
+    own.name = "DefaultStreamHandler"
+    logger.addHandler(own)
+    console.take_over(logger, lambda: None)
+    logger.error(text, extra={"event": LogEvent.ERROR, "exception": "WorkflowError"})
+    assert bool(screen.getvalue()) == bool(shown)
+    (line,) = file.getvalue().splitlines()
+    assert line.startswith(f"scanplan: Snakemake could not go on {said}; ")
+    assert "same command goes on" in line
+
+
 def test_with_nothing_to_do_the_results_are_told(console):
     logger, told = logging.Logger("snakemake"), []
     console.take_over(logger, lambda: told.append(1))

@@ -148,7 +148,9 @@ def test_folders_behind_a_link_stay():
 
 
 def test_results_are_said_with_their_places():
-    Path("results/floor").mkdir(parents=True)
+    Path("results/floor/plan").mkdir(parents=True)
+    assert "results/floor/plan, not drawn" in run_outcome.describe_results("floor")
+    Path("results/floor/plan/plan.pdf").touch()
     text = run_outcome.describe_results("floor")
     assert "results/floor/plan/plan.pdf" in text and "results/floor/report.html" in text
     assert "comparison" not in text

@@ -91,6 +91,8 @@ def test_a_profile_that_is_nowhere_is_told(tmp_path):
     (line,) = run.stderr.splitlines()
     assert run.returncode == 1 and run.stdout == ""
     assert line.startswith("scanplan: SNAKEMAKE_PROFILE=nowhere: ") and "unset" in line
+    says = "import os; print('SNAKEMAKE_PROFILE' in os.environ)"
+    assert shell('"$PY" -c "$SAYS"', tmp_path, says, SNAKEMAKE_PROFILE="").stdout == "False\n"
     (tmp_path / "nowhere").mkdir()
     assert shell('"$PY" -c "$SAYS"', tmp_path, SNAKEMAKE_PROFILE="nowhere").returncode == 0
 

@@ -41,6 +41,8 @@ _CHATTER = (
     "Cannot restore",
 )
 _CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
+_TRACE = "Traceback"
+_MOST_LINES = 3  # of what Snakemake says: the kind of error, what is wrong, and where
 # the stage itself says what was wrong
 _ERRORS_OF_STAGES = ("CalledProcessError", "RuleException")
 _PROGRESS = re.compile(r" INFO [^:]+: ((?:\d+(?:/\d+)? [^:]*, [\d.]+ per s|takes long: ).*)$")
@@ -142,6 +144,9 @@ class RunConsole(logging.Handler):
             self._close(getattr(record, "job_id", -1), "")
         elif event == LogEvent.JOB_ERROR:
             self._close(getattr(record, "jobid", -1), "failed")
+        elif event == LogEvent.ERROR and not _is_of_stage(record):
+            self.end()
+            self._terminal.say(f"scanplan: {_describe_error(record)}")
 
     def _open(self, record: logging.LogRecord) -> None:
         of_job = dict(getattr(record, "wildcards", {}))
@@ -194,10 +199,26 @@ class RunConsole(logging.Handler):
         """Return whether Snakemake's own screen still shows a message."""
         event = getattr(record, "event", None)
         if event == LogEvent.ERROR:
-            return getattr(record, "exception", None) not in _ERRORS_OF_STAGES
+            return not _is_of_stage(record) and _TRACE not in record.getMessage()
         if event in _CHATTER_EVENTS or str(record.msg).startswith(_CHATTER):
             return False
         return record.levelno >= logging.WARNING or not self._total
+
+
+def _is_of_stage(record: logging.LogRecord) -> bool:
+    return getattr(record, "exception", None) in _ERRORS_OF_STAGES
+
+
+def _describe_error(record: logging.LogRecord) -> str:
+    """Return why Snakemake itself ends a run, in one line."""
+    lines = [line.strip() for line in record.getMessage().splitlines() if line.strip()]
+    # a trace has its reason at its end, what Snakemake says in words at its beginning
+    is_trace = any(_TRACE in line for line in lines)
+    reason = lines[-1] if is_trace else " ".join(lines[:_MOST_LINES])
+    return (
+        f"Snakemake could not go on ({reason}); the whole of it is in .snakemake/log, and once that"
+        " is mended the same command goes on from here"
+    )
 
 
 def open_console(datasets: Iterable[str]) -> RunConsole:

@@ -26,9 +26,11 @@ def describe_results(name: str) -> str:
     found = summary.read_text(encoding="utf-8") if summary.exists() else ""
     compared = f"{folder}/comparison.html"
     beside = f", {compared}" if Path(compared).exists() else ""
+    drawn = f"{folder}/plan/plan.pdf"
+    where = f"{drawn} (also .svg, .dxf, .geojson, map.pgm and more)"
     return (
         f"\n{name}\n{found}"
-        f"plan     {folder}/plan/plan.pdf (also .svg, .dxf, .geojson, map.pgm and more)\n"
+        f"plan     {where if Path(drawn).exists() else f'{folder}/plan, not drawn'}\n"
         f"report   {folder}/report.html{beside}"
     )
 

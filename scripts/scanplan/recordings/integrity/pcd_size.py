@@ -36,10 +36,10 @@ def check_pcd_size(path: Path) -> None:
         if form == "binary_compressed":
             packed, unpacked = _SIZES.unpack_from(head, begin)
             packed += _SIZES.size
+        # numbers in text are as long as they are written
+        least = {"ascii": 0, "binary": needed, "binary_compressed": packed}[form]
     except (ValueError, LookupError, struct.error):
         raise StageError(f"{path}: damaged: its header cannot be read; write it again") from None
-    # numbers in text are as long as they are written
-    least = {"binary": needed, "binary_compressed": packed}.get(form, 0)
     if begin + least > length or needed > unpacked:
         raise StageError(
             f"{path}: damaged: its points need {needed} bytes, its {form} data have"
