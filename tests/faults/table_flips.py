@@ -42,7 +42,7 @@ def write_tables(folder, rng):
 def flip_bits(path, schema, n_flips, rng, tally):
     """Flip bits of a table one by one, each in the whole file again; judge each."""
     content = path.read_bytes()
-    right = _read(path, schema)
+    right = read_all(path, schema)
     bits = rng.choice(8 * len(content), min(n_flips, 8 * len(content)), replace=False)
     group = "bit flips of tables"
     counts, n_done = Counter(), 0
@@ -83,7 +83,7 @@ def _judge_flip(path, schema, content, bit, right):
     flipped[bit // 8] ^= 1 << bit % 8
     path.write_bytes(flipped)
     try:
-        found = _read(path, schema)
+        found = read_all(path, schema)
     except StageError as error:
         return judging.CLEAR if len(str(error).splitlines()) == 1 else judging.NO_LINE
     except Exception as error:
@@ -91,7 +91,7 @@ def _judge_flip(path, schema, content, bit, right):
     return judging.SOUND if found == right else judging.SILENT
 
 
-def _read(path, schema):
+def read_all(path, schema):
     """Return all that a stage could read of a table, to compare."""
     if schema is schemas.SCANS:
         store = tables.ScanStore(path)
