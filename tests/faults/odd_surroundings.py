@@ -266,7 +266,9 @@ def _run_in(place, name):
     Path(os.fsdecode(folder)).mkdir(parents=True, exist_ok=True)
     for entry in ("Snakefile", "workflow", "scripts", "config", "tests", "profiles", "d"):
         Path(os.fsdecode(folder), entry).symlink_to(place.project.folder / entry)
-    moved = _Place(_Moved(place.project, folder), place.right)
+    # the dataset lies elsewhere from there, and its note of the source says so
+    right = {file: digest for file, digest in place.right.items() if "source.txt" not in file}
+    moved = _Place(_Moved(place.project, folder), right)
     return moved.run('cd "$WHERE" && "$@"', fresh=False, WHERE=os.fsdecode(folder))
 
 

@@ -114,7 +114,7 @@ def test_snakemakes_own_screen_shows_errors_that_no_stage_has_said(console):
     ("text", "shown", "said"),
     [
         (
-            "WorkflowError:\n    a is older\n    than b\n    rule",
+            "WorkflowError:\n    a is older\n    than b\n",
             1,
             "(WorkflowError: a is older than b)",
         ),

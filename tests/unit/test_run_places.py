@@ -58,5 +58,14 @@ def test_a_file_dated_in_the_future_is_told_with_both_times(path, ahead_s):
     Path(path).touch()
     run_places.check_dates(["d"], ["d/run.bag", "d/gone.bag"])
     os.utime(path, (0, time.time() + ahead_s))
-    with pytest.raises(StageError, match=f"^{path}: is dated .* clock says .* run `touch` on it"):
+    with pytest.raises(StageError, match=f"^{path}: is dated .* clock says .* run `touch` on what"):
         run_places.check_dates(["d"], ["d/run.bag"])
+
+
+def test_all_files_dated_in_the_future_are_counted():
+    Path("results/d").mkdir(parents=True)
+    for name in ("a", "b", "c"):
+        Path("results/d", name).touch()
+        os.utime(Path("results/d", name), (0, 5e9))
+    with pytest.raises(StageError, match=r"is dated 2128.*, 2 others likewise, and this"):
+        run_places.check_dates(["d"], [])

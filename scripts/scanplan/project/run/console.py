@@ -42,7 +42,8 @@ _CHATTER = (
 )
 _CHATTER_EVENTS = {event for event in LogEvent if event != LogEvent.ERROR}
 _TRACE = "Traceback"
-_MOST_LINES = 3  # of what Snakemake says: the kind of error, what is wrong, and where
+_MOST_LINES = 6  # of what Snakemake says: the kind of error, what is wrong, advice, a file or two
+_MOST_LETTERS = 600  # nobody reads a longer line
 # the stage itself says what was wrong
 _ERRORS_OF_STAGES = ("CalledProcessError", "RuleException")
 _PROGRESS = re.compile(r" INFO [^:]+: ((?:\d+(?:/\d+)? [^:]*, [\d.]+ per s|takes long: ).*)$")
@@ -214,7 +215,7 @@ def _describe_error(record: logging.LogRecord) -> str:
     lines = [line.strip() for line in record.getMessage().splitlines() if line.strip()]
     # a trace has its reason at its end, what Snakemake says in words at its beginning
     is_trace = any(_TRACE in line for line in lines)
-    reason = lines[-1] if is_trace else " ".join(lines[:_MOST_LINES])
+    reason = lines[-1] if is_trace else " ".join(lines[:_MOST_LINES])[:_MOST_LETTERS]
     return (
         f"Snakemake could not go on ({reason}); the whole of it is in .snakemake/log, and once that"
         " is mended the same command goes on from here"

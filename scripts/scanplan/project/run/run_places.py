@@ -60,15 +60,20 @@ def check_dates(names: Iterable[str], sources: Iterable[str]) -> None:
     """
     now_s = time.time()
     made = (path for name in names for path in Path("results", name).rglob("*"))
+    ahead: list[tuple[Path, float]] = []
     for path in (*made, *map(Path, sources)):
         with suppress(FileNotFoundError):
             dated_s = path.stat().st_mtime
             if dated_s > now_s + _MOST_AHEAD_S and not path.is_dir():
-                raise StageError(
-                    f"{path}: is dated {_format_time(dated_s)}, and this computer's clock says"
-                    f" {_format_time(now_s)}: what is made of it would count as older; set the"
-                    " clock, or run `touch` on it"
-                )
+                ahead.append((path, dated_s))
+    if ahead:
+        path, dated_s = ahead[0]
+        others = f", {len(ahead) - 1} others likewise" if ahead[1:] else ""
+        raise StageError(
+            f"{path}: is dated {_format_time(dated_s)}{others}, and this computer's clock says"
+            f" {_format_time(now_s)}: what is made of it would count as older; set the clock, or"
+            " run `touch` on what is dated ahead"
+        )
 
 
 def _format_time(since_1970_s: float) -> str:
