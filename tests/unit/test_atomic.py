@@ -117,6 +117,15 @@ def test_a_disk_that_fails_is_told_with_the_file(tmp_path, monkeypatch, call):
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.txt", "old")]
 
 
+def test_a_place_that_knows_no_sync_is_written_to(tmp_path, monkeypatch):
+    def refuse(_):
+        raise OSError(errno.EINVAL, "no sync")
+
+    monkeypatch.setattr("os.fsync", refuse)
+    atomic.write_text(tmp_path / "a.txt", "new")
+    assert (tmp_path / "a.txt").read_text() == "new"
+
+
 def test_where_nothing_can_be_removed_the_first_fault_is_told(tmp_path, monkeypatch):
     def fail(*_, **__):
         raise PermissionError(errno.EPERM, "refused")

@@ -17,6 +17,8 @@ from scanplan.plain_types import FilePath
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 # what a disk, or a network between it and this computer, fails with
 _BROKEN = (errno.EIO, errno.ESTALE, errno.EREMOTEIO, errno.ETIMEDOUT, errno.ENOTCONN)
+# what file systems say that have no way to wait for the disk
+_UNSYNCED = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENOTDIR, errno.EISDIR, errno.EEXIST)
 _WRITER = re.compile(r"\.(\d+)\.part")
 _unfinished: set[Path] = set()
@@ -170,5 +172,8 @@ def _sync(path: Path) -> None:
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
+    except OSError as error:
+        if error.errno not in _UNSYNCED:
+            raise
     finally:
         os.close(descriptor)
