@@ -99,6 +99,26 @@ def mend_surroundings() -> None:
     _place_caches()
 
 
+def shorten_traces(*, is_begun: bool = False) -> None:
+    """Have Snakemake end in one line where it fails before it has read our rules.
+
+    Once it `is_begun` the run tells its faults, and traces are kept in its log.
+    """
+    # of weight, and for the run alone
+    import logging
+
+    logger = logging.getLogger("snakemake.logging")
+    (logger.removeFilter if is_begun else logger.addFilter)(_shorten_trace)
+
+
+def _shorten_trace(record: Any) -> bool:
+    lines = record.getMessage().strip().splitlines()
+    if any(line.startswith("Traceback") for line in lines):
+        record.msg = f"scanplan: Snakemake could not begin ({lines[-1].strip()}); mend that first"
+        record.args = ()
+    return True
+
+
 def is_unheard() -> bool:
     """Return whether what was said last reached nobody."""
     sys.stderr.flush()

@@ -1,11 +1,14 @@
 """What a process says is heard where any stream carries it; odd surroundings are mended."""
 
+import logging
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from scanplan import surroundings
 
 ROOT = Path(__file__).resolve().parents[2]
 STARTUP = ROOT / "scripts/startup"
@@ -110,3 +113,16 @@ def test_a_working_folder_of_no_use_is_told(tmp_path, enter, said):
     (line,) = run.stderr.splitlines()[-1:]
     assert run.returncode == 1 and line.startswith("scanplan: ") and said in line
     assert run.stdout == "" and "Traceback" not in run.stderr
+
+
+def test_a_trace_of_snakemakes_is_a_line_until_rules_are_read(caplog):
+    trace = "Traceback (most recent call last):\n  File x\nOSError: no room\n"
+    logger = logging.getLogger("snakemake.logging")
+    surroundings.shorten_traces()
+    logger.error(trace)
+    logger.error("in words")
+    surroundings.shorten_traces(is_begun=True)
+    logger.error(trace)
+    said = [record.getMessage() for record in caplog.records]
+    assert said[0].startswith("scanplan: Snakemake could not begin (OSError: no room); ")
+    assert said[1:] == ["in words", trace]

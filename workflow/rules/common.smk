@@ -61,7 +61,7 @@ from scanplan.project.settings_schema import list_choices, read_schema, type_tex
 from scanplan.project.targets import check_targets
 from scanplan.project.yaml_file import read_yaml
 from scanplan.selection import methods
-from scanplan.surroundings import is_unheard
+from scanplan.surroundings import is_unheard, shorten_traces
 
 if not IS_MODULE:
     keep_figures_ours(os.environ)

@@ -116,6 +116,8 @@ if workflow.is_main_process and not IS_MODULE:
             run_lock.lock_results, [n for n in GIVEN if os.path.isdir(f"results/{n}")]
         )
     )
+if not IS_MODULE:
+    shorten_traces(is_begun=True)
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 
