@@ -331,7 +331,12 @@ def content_of_recordings(wildcards):
     """A param function: what tells recordings from others in their place, older ones too."""
     dataset = DATASETS[wildcards.dataset]
     # a simulated one is made in the run, of what its rule names
-    return "" if dataset.building else or_end(digest_recordings, dataset.recordings)
+    if dataset.building:
+        return ""
+    # so are those of the thesis; Snakemake asks again once they are there
+    for file in dataset.recordings:
+        Path(file).stat()
+    return or_end(digest_recordings, dataset.recordings)
 
 
 def true_faces(wildcards):
