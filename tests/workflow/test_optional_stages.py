@@ -57,5 +57,5 @@ def test_what_was_lacking_is_made_by_the_same_command(project):
     made, right = project.digests(), project.right
     assert made.keys() == right.keys()
     # a title block names the code, which a spoilt script was a part of when the sheet was drawn
-    drawn = {f"results/demo/plan/plan.{kind}" for kind in ("svg", "pdf", "dxf")}
+    drawn = {f"results/demo/plan/plan.{kind}" for kind in ("svg", "pdf", "dxf", "png")}
     assert {name for name in made if made[name] != right[name]} <= drawn
