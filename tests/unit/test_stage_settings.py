@@ -143,7 +143,7 @@ def keywords(stage):
         (measure_crispness, stage_settings.select_crispness(SETTINGS), set()),
         (build_hulls, stage_settings.select_hulls(SETTINGS), {"threads", "chunk"}),
         (simulate_survey, stage_settings.select_simulation(SETTINGS), {"threads", "start_ns"}),
-        (interpolate_poses, stage_settings.select_section(SETTINGS, "poses"), {"moved"}),
+        (interpolate_poses, stage_settings.select_section(SETTINGS, "poses"), {"moved", "made_of"}),
     ],
 )
 def test_the_stages_take_what_is_selected(stage, selected, others):

@@ -145,7 +145,7 @@ class TestOverlooked:
     def test_openings_are_not_asked(self):
         """A window from 0.25 to 0.5 m."""
         counts = self.counts([20] * 5 + [5] * 5 + [20] * 10)
-        made = wall(0, 0, 1, 0, NAN, openings=[(0.25, 0.5)])
+        made = with_door(wall(0, 0, 1, 0, NAN), 0.25, 0.5, kind="window")
         assert look([made], counts=counts).overlooked == 0
         assert look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked == pytest.approx(5 / 20)
 
@@ -162,8 +162,11 @@ class TestWhatRaysSay:
 
     def test_what_is_an_opening_is_not_solid(self):
         """A window of 0.25 m; of a column's middle it is told in which it lies."""
-        made = wall(0, 0, 1, 0, NAN, openings=[(0.25, 0.5)])
+        made = with_door(wall(0, 0, 1, 0, NAN), 0.25, 0.5, kind="window")
         assert look([made]).solid == pytest.approx(0.75)
+
+    def test_a_slot_between_things_is_no_opening(self):
+        assert look([with_door(wall(0, 0, 1, 0, NAN), 0.25, 0.5, kind="gap")]).solid == 1
 
     def test_what_ends_behind_is_a_share_of_what_ended(self):
         """Of rows 2 to 4; what passes below and above is none of it."""
