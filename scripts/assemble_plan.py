@@ -13,7 +13,7 @@ from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
-from scanplan.stage import log, workers
+from scanplan.stage import log, witnesses, workers
 from scanplan.store import doubts, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings
 from scanplan.validation import contradictions
@@ -91,7 +91,8 @@ def assemble_plan(
         floor_z_m=float(heights_m["floor_z_m"]),
         ceiling_z_m=float(heights_m["ceiling_z_m"]),
     )
-    new = contradictions.find_contradictions(drawn, rays, poses[np.argsort(registered.t_ns), :2, 3])
+    track_m = poses[np.argsort(registered.t_ns), :2, 3]
+    new = witnesses.tell("assemble_plan", contradictions.measure_drawn_walls(drawn, rays, track_m))
     found = doubts.read_doubts(registration, schemas.REGISTRATION).add(contradictions=new)
     for sentence in new:
         log.log_warning(f"assemble_plan: {sentence}")

@@ -2,14 +2,24 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
+import numpy as np
+
 from scanplan.project import provenance
-from scanplan.registration import contradictions, gate_shares, mapping, results
+from scanplan.registration import (
+    contradictions,
+    gate_shares,
+    mapping,
+    prepared_clouds,
+    results,
+)
 from scanplan.registration.candidates import chunk_files, registered_candidates
+from scanplan.registration.constraints import neighbour_reach_m
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
-from scanplan.stage import log, workers
+from scanplan.stage import log, witnesses, workers
 from scanplan.store import doubts, lineage, scan_cache, schemas, tables
 from scanplan.types import FilePath, FloatArray, IntArray
 
@@ -78,6 +88,25 @@ def register_scans(
             verdicts, survey, found.read_points, limits.limits, recordings[0]
         )
         kept = registered_candidates.find_kept(verdicts)
+        still = contradictions.measure_standstill(survey.priors, verdicts)
+        misfit = contradictions.measure_misfit(
+            verdicts,
+            is_odometry=survey.is_odometry,
+            # of chunks only the points of scans that fit are kept
+            find_cause=str if chunks else partial(_find_cause, found, t_ns),
+        )
+        # of poses that are all the same that is the cause
+        measured = [still] if still.is_beyond else [still, misfit]
+        if constraints is not None:
+            measured += constraints.witnesses
+        if constraints is not None and limits.graph.optimise and not survey.is_odometry:
+            clouds = prepared_clouds.PreparedScans(
+                thinned, survey.planar, neighbour_reach_m(limits.limits)
+            )
+            is_kept = np.isin(found.kept, kept)
+            measured += contradictions.measure_map(
+                survey, t_ns, verdicts, constraints, clouds.take(np.flatnonzero(is_kept)), odometry
+            )
         _write_kept_scans(scans, survey, verdicts, kept, found.read_points(kept))
     log.log_line(
         f"register_scans: {results.summarise_registration(verdicts, found.n_dropped)};"
@@ -86,18 +115,21 @@ def register_scans(
     columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, t_ns, verdicts)
-    told = doubts.read_doubts(poses, schemas.POSES).add(
-        found.damage,
-        [
-            *contradictions.find_standstill(survey.priors, verdicts),
-            *contradictions.find_misfit(verdicts, is_odometry=survey.is_odometry),
-        ],
-    )
-    if constraints is not None:
-        told = told.add(contradictions=constraints.doubts)
+    spoken = witnesses.tell("register_scans", measured)
+    told = doubts.read_doubts(poses, schemas.POSES).add(found.damage, spoken)
     for sentence in told.sentences:
         log.log_warning(f"register_scans: {sentence}")
     tables.write_table(registered, schemas.REGISTRATION, columns, notes=told.as_notes())
+
+
+def _find_cause(found: registered_candidates.RegisteredCandidates, t_ns: IntArray) -> str:
+    """Return which reading lets scans meet that do not as they were read, in words."""
+    from scanplan.registration import readings  # scipy's 0.3 s, and few scans do not fit
+
+    survey = found.survey
+    return readings.find_reading(
+        survey.priors, t_ns, lambda rows: list(found.read_points(rows)), planar=survey.planar
+    )
 
 
 def _write_kept_scans(

@@ -7,10 +7,10 @@ import numpy as np
 
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.selection import stopping
-from scanplan.stage import log
-from scanplan.store import registered_scans, schemas, tables
+from scanplan.stage import log, witnesses
+from scanplan.store import doubts, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, Settings
-from scanplan.validation import confidence, left_out_scans, prediction
+from scanplan.validation import confidence, left_out_scans, prediction, survey_witnesses
 
 
 def validate_plan(
@@ -67,7 +67,18 @@ def validate_plan(
     tables.write_table(outputs["rays"], schemas.VALIDATION_RAYS, found.rays, allow_empty=True)
     result = absent or prediction.summarise_counts(found)
     rated = confidence.rate_elements(drawn, found.elements)
-    tables.write_table(outputs["confidence"], schemas.CONFIDENCE, rated)
+    xyz_m = registered.map_from_sensor[:, :3, 3]
+    spoken = witnesses.tell(
+        "validate_plan", survey_witnesses.measure_plan(drawn, rays, xyz_m, found)
+    )
+    for sentence in spoken:
+        log.log_warning(f"validate_plan: {sentence}")
+    tables.write_table(
+        outputs["confidence"],
+        schemas.CONFIDENCE,
+        rated,
+        notes=doubts.Doubts(contradictions=tuple(spoken)).as_notes(),
+    )
     log.log_line(
         f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result};"
         f" {_summarise_confidence(rated)}"

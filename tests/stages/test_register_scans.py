@@ -68,14 +68,14 @@ def hall(n=4000, seed=0):
     return points
 
 
-def survey(n_scans=5, empty=(), moved=()):
+def survey(n_scans=5, empty=(), moved=(), off_m=0.04):
     """Clouds of a drive through the hall, 0.1 m a scan, some empty; poses, some off by 4 cm."""
     maker, entries = bag_making.Maker(), []
     for i in range(n_scans):
         t_ns, place = bag_making.START_NS + i * STEP_NS, np.array([1 + 0.1 * i, 2, 0.5])
         seen = np.full((5, 3), np.nan) if i in empty else hall(seed=i) - place
         entries.append(
-            ("/amcl_pose", t_ns, maker.amcl(t_ns, (place[0] + 0.04 * (i in moved), *place[1:])))
+            ("/amcl_pose", t_ns, maker.amcl(t_ns, (place[0] + off_m * (i in moved), *place[1:])))
         )
         entries.append(("/points", t_ns + 1, maker.cloud(t_ns, seen.astype(np.float32))))
     return entries
@@ -118,6 +118,21 @@ def test_odometry_beside_a_localiser_says_how_the_sensor_moved(run, monkeypatch,
     if odometry is not None:
         steps = odometry(np.array([0, 1, 3, 4]))
         np.testing.assert_allclose(steps[:, 0, 3], [0.125, 0.25, 0.125], atol=1e-9)
+
+
+@pytest.mark.parametrize("off_m", [0.0, 1.5])
+def test_a_map_that_jumps_is_told_where_odometry_goes_on(run, off_m):
+    maker, entries = bag_making.Maker(), survey(12, moved=range(6, 12), off_m=off_m)
+    for i in range(12):
+        t_ns = bag_making.START_NS + i * STEP_NS
+        entries.append(("/odom", t_ns, maker.odometry(t_ns, (0.1 * i, 0, 0))))
+    _, registered, _ = run(entries, with_motion=True)
+    told = doubts.read_doubts(registered, schemas.REGISTRATION).contradictions
+    # the scans behind the jump fit the others no more, of which no reading is the cause
+    assert ["the map jumps" in each and "odometry" in each for each in told] == (
+        [False, True] if off_m else []
+    )
+    assert not off_m or "base_from_sensor" in told[0]
 
 
 def test_scans_without_points_are_named_and_left_out(run):

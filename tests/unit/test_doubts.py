@@ -39,10 +39,9 @@ def verdicts(n_kept, n_rejected, n_empty=0):
     [(18, 3, 0, False), (16, 4, 0, True), (18, 3, 50, False), (0, 0, 5, False), (3, 1, 0, False)],
 )
 def test_scans_that_do_not_fit_are_doubted(kept, rejected, empty, is_doubted):
-    found = of_registration.find_misfit(verdicts(kept, rejected, empty))
-    assert bool(found) == is_doubted
-    if found:
-        assert found[0].startswith("only 16 of 20 scans fit one another")
+    found = of_registration.measure_misfit(verdicts(kept, rejected, empty))
+    assert found.is_beyond == is_doubted
+    assert found.more["n_kept"] == kept and found.more["n_asked"] == kept + rejected
 
 
 @pytest.mark.parametrize(
@@ -54,9 +53,9 @@ def test_scans_that_do_not_fit_where_the_sensor_is_said_to_stand_are_doubted(
     priors = np.tile(np.eye(4), (6, 1, 1))
     priors[2, 0, 3] = moved_m
     priors[3] = np.nan
-    found = of_registration.find_standstill(priors, verdicts(6 - rejected, rejected))
-    assert bool(found) == is_doubted
-    assert not found or ("2 scans do not fit" in found[0] and "input.pose_topic" in found[0])
+    found = of_registration.measure_standstill(priors, verdicts(6 - rejected, rejected))
+    assert found.is_beyond == is_doubted and found.value == rejected * is_doubted
+    assert "input.pose_topic" in found.sentence
 
 
 def rays_at(xy_m):
@@ -75,9 +74,10 @@ def points_on(plan, share, n=100):
 @pytest.mark.parametrize(("share", "is_doubted"), [(0.5, False), (0.1, True)])
 def test_returns_beside_the_walls_are_doubted(share, is_doubted):
     plan = floorplan_making.plan()
-    found = contradictions.find_contradictions(plan, points_on(plan, share), np.zeros((1, 2)))
-    assert bool(found) == is_doubted
-    assert not found or found[0].startswith("only 10% of the returns lie on the walls")
+    rays = points_on(plan, share)
+    off, through = contradictions.measure_drawn_walls(plan, rays, np.zeros((1, 2)))
+    assert off.is_beyond == is_doubted and not through.is_beyond
+    assert off.more["near"] == pytest.approx(share, abs=0.02)
 
 
 def test_a_way_through_walls_is_doubted():

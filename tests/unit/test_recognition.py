@@ -1,6 +1,7 @@
 """A submap is found on another one where it lies, and nowhere else; contradictions are told."""
 
 import numpy as np
+import pytest
 from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
@@ -76,10 +77,13 @@ def test_rooms_laid_over_one_another_are_told_as_a_fold():
     poses = planar_poses([[0, 0], [50, 0], [0.5, 0]], [0, 0, 0])
     way_m = np.array([0.0, 50.0, 99.5])
     sound = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(6, 6), 0)]
-    assert folds.find_folds(sound[:2], poses, way_m) == []
+    assert folds.measure_folds(sound[:2], poses, way_m) == []
     folded = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(3, 3), 2)]
-    (sentence,) = folds.find_folds(folded, poses, way_m)
-    assert "1 of 1 places" in sentence and "folded" in sentence
+    other, moved = folds.measure_folds(folded, poses, way_m)
+    assert other.is_beyond and other.more["n_places"] == 1 and not moved.is_beyond
+    assert other.name == "drifting other place"
+    (other,) = folds.measure_folds(folded, poses, way_m, drifts=False)
+    assert other.is_beyond and other.name == "other place"
 
 
 def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():
@@ -98,18 +102,20 @@ def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():
     # two of three places, or one, which a table that was moved would be, too
     other = [submap([*sides, end], 2), submap([*sides, end], 3)]
     twins = [submap([*sides, wall([-0.8, 8], [0.8, 8])], 0), submap(room(6, 6), 1), *other]
-    (sentence,) = folds.find_folds(twins, poses, way_m)
-    assert "2 of 3 places" in sentence and "folded there" in sentence
-    assert folds.find_folds(twins[:3], poses[:3], way_m[:3]) == []
+    other, moved = folds.measure_folds(twins, poses, way_m)
+    assert moved.is_beyond and moved.value == pytest.approx(2 / 3) and not other.is_beyond
+    assert not any(
+        found.is_beyond for found in folds.measure_folds(twins[:3], poses[:3], way_m[:3])
+    )
 
 
 def test_parts_without_a_tie_are_told():
     def ties(*pairs):
-        return folds.find_loose_parts(8, *np.array(pairs, np.int64).T)
+        return folds.measure_loose_parts(8, *np.array(pairs, np.int64).T)
 
     chain = [(row + 1, row) for row in range(7)]
-    assert ties(*chain) == []
-    (sentence,) = ties(*chain[:4], *chain[5:])
-    assert "3 of 8 scans, in 1 parts" in sentence
+    assert not ties(*chain).is_beyond
+    loose = ties(*chain[:4], *chain[5:])
+    assert loose.is_beyond and loose.value == 3 and loose.more["n_parts"] == 1
     # the last two scans alone displace next to nothing
-    assert ties(*chain[:5], chain[6]) == []
+    assert not ties(*chain[:5], chain[6]).is_beyond

@@ -8,7 +8,7 @@ import numpy as np
 
 from scanplan.plan.floorplan import NUMBERS, FloorPlan, GeoReference, make_floorplan
 from scanplan.store import schemas, tables
-from scanplan.store.doubts import read_doubts
+from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Columns, FilePath
 
 UNRATED = "not rated, as the stage that rates it failed"
@@ -30,7 +30,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     files : dict of str to path-like
         `faces`, `walls`, `openings`, `rooms` and `free` of plan/, where they are wanted `furniture`
         and `confidence`, an empty list where the stage that makes it failed; `free` states the
-        heights of floor and ceiling, and doubts.
+        heights of floor and ceiling, and doubts, to which `confidence` adds.
     name : str
     **assumed_m
         What `FloorPlan` assumes, where it is not the default.
@@ -55,8 +55,10 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         "rooms": read("rooms", schemas.ROOMS),
         "free": read("free", schemas.FREE),
     }
+    doubted = read_doubts(files["free"], schemas.FREE)
     if "confidence" in files:
-        rated, otherwise = _read_rated(files["confidence"])
+        rated, otherwise, doubts = _read_rated(files["confidence"])
+        doubted = doubted.join(doubts)
         parts = {
             table: _join_confidence(table, columns, rated, otherwise)
             for table, columns in parts.items()
@@ -76,19 +78,23 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         unmatched_corrections=json.loads(
             tables.read_note(files["free"], schemas.FREE, "unmatched_corrections") or "[]"
         ),
-        doubted=read_doubts(files["free"], schemas.FREE),
+        doubted=doubted,
         **assumed_m,
     )
 
 
-def _read_rated(path: FilePath | Sequence[FilePath]) -> tuple[Columns, Mapping[str, float | str]]:
-    """Return `schemas.CONFIDENCE`, and what holds of an element that has no row there.
+def _read_rated(
+    path: FilePath | Sequence[FilePath],
+) -> tuple[Columns, Mapping[str, float | str], Doubts]:
+    """Return `schemas.CONFIDENCE`, what holds of an element without a row there, and doubts.
 
     Where the stage that rates the plan failed, the workflow gives an empty list.
     """
     if isinstance(path, str | Path):
-        return tables.read_table(path, schemas.CONFIDENCE, allow_empty=True), _UNSEEN
-    return tables.no_rows(schemas.CONFIDENCE), _UNSEEN | {"p_true": np.nan, "doubt": UNRATED}
+        rated = tables.read_table(path, schemas.CONFIDENCE, allow_empty=True)
+        return rated, _UNSEEN, read_doubts(path, schemas.CONFIDENCE)
+    unrated = _UNSEEN | {"p_true": np.nan, "doubt": UNRATED}
+    return tables.no_rows(schemas.CONFIDENCE), unrated, NO_DOUBT
 
 
 def _join_confidence(

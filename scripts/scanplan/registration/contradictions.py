@@ -1,19 +1,35 @@
 """What of a registration cannot be if the recording's units, mounting and clock are right."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from scanplan.geometry import se3
+from scanplan.registration import constraints, joins, loops, pose_lean, pose_scale
+from scanplan.registration.batches import CandidateScans
+from scanplan.registration.drift import submaps
+from scanplan.registration.drift.odometry import measure_way
+from scanplan.registration.mapping import StepsBetween
+from scanplan.registration.multiway import OptimisedMap
+from scanplan.registration.prepared_clouds import PreparedScans
 from scanplan.registration.sequential import ScanResult
-from scanplan.types import FloatArray
+from scanplan.stage.witnesses import WITNESSES, Measured, state_witness
+from scanplan.types import FloatArray, IntArray
 
-_LEAST_KEPT = 0.85  # 28 sound surveys, ten of them recorded, keep 0.91 and more
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
 _UNASKED = ("too_few_points", "pose_gap")
+_USUAL_CAUSES = (
+    "the clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may be"
+    " wrong"
+)
+_SUBMAP_M = 4.0  # of way, as advanced.registration.drift.submap_m
+_STATION_M = 0.5  # scans nearer to one another add next to nothing to a submap
+_SURE = 2.0  # standard deviations of a scale
+_ALL_BUT = (2.0, 98.0)  # percent of heights: a pose or two that err are no storey
 
 
-def find_standstill(priors: FloatArray, scan_results: Sequence[ScanResult]) -> list[str]:
-    """Return whether scans of a sensor that is said to stand still do not fit, as a sentence.
+def measure_standstill(priors: FloatArray, scan_results: Sequence[ScanResult]) -> Measured:
+    """Return how many scans do not fit the others where all poses are the same.
 
     Parameters
     ----------
@@ -22,17 +38,18 @@ def find_standstill(priors: FloatArray, scan_results: Sequence[ScanResult]) -> l
     scan_results : sequence of n sequential.ScanResult
     """
     poses = priors[np.isfinite(priors).all(axis=(1, 2))]
-    n_dropped = sum(not r.kept for r in scan_results if r.reason not in _UNASKED)
-    if n_dropped == 0 or np.ptp(poses, axis=0).max() > _STILL:
-        return []
-    return [
-        f"all recorded poses are the same, and {n_dropped:,} scans do not fit one another there:"
-        " the sensor moved, and its poses (input.pose_topic) do not say so"
-    ]
+    n_left = sum(not r.kept for r in scan_results if r.reason not in _UNASKED)
+    stands = n_left > 0 and np.ptp(poses, axis=0).max() <= _STILL
+    return state_witness("standstill", n_left if stands else 0)
 
 
-def find_misfit(scan_results: Sequence[ScanResult], *, is_odometry: bool = False) -> list[str]:
-    """Return whether most scans do not fit one another at their poses, as a sentence.
+def measure_misfit(
+    scan_results: Sequence[ScanResult],
+    *,
+    is_odometry: bool = False,
+    find_cause: Callable[[], str] = str,
+) -> Measured:
+    """Return which share of the scans does not fit the others at their poses.
 
     Parameters
     ----------
@@ -40,15 +57,111 @@ def find_misfit(scan_results: Sequence[ScanResult], *, is_odometry: bool = False
         One per candidate.
     is_odometry : bool
         Whether the poses do not know where the robot is if it is carried.
+    find_cause : callable
+        Returns the cause in words, where one is found; it is asked of scans that do not fit.
     """
     asked = [result for result in scan_results if result.reason not in _UNASKED]
     n_kept = sum(result.kept for result in asked)
+    n_left = len(asked) - n_kept
     # one scan alone may be of a door that closed
-    if len(asked) - n_kept <= max(1, (1 - _LEAST_KEPT) * len(asked)):
-        return []
+    share = n_left / len(asked) if n_left > 1 else 0.0
+    found = state_witness("misfit", share, n_kept=n_kept, n_asked=len(asked))
+    if not found.is_beyond:
+        return found
     carried = ", or the robot was carried" if is_odometry else ""
+    return found.add(cause=find_cause() or f"{_USUAL_CAUSES}{carried}")
+
+
+def measure_map(
+    survey: CandidateScans,
+    t_ns: IntArray,
+    scan_results: Sequence[ScanResult],
+    optimised: OptimisedMap,
+    clouds: PreparedScans,
+    odometry: StepsBetween | None,
+) -> list[Measured]:
+    """Measure whether a map of a localiser's poses can be.
+
+    Parameters
+    ----------
+    survey : batches.CandidateScans
+    t_ns : (n,) int64
+        Stamps of the candidates.
+    scan_results : sequence of sequential.ScanResult
+        One per candidate.
+    optimised : multiway.OptimisedMap
+    clouds : prepared_clouds.PreparedScans
+        Of those that are kept.
+    odometry : callable, optional
+        See `mapping.optimise_map`.
+    """
+    kept = np.flatnonzero([result.kept for result in scan_results])
+    scan_ids = survey.scan_ids[kept]
+    rows = kept.tolist()
+    levels = [constraints.level_pose(survey.priors[row], planar=survey.planar) for row in rows]
+    level_from_sensor = np.array(levels)
+    sensor_from_level = se3.invert_pose(level_from_sensor)
+    world_from_sensor = np.array([scan_results[row].world_from_sensor for row in rows])
+    world_from_cloud = world_from_sensor @ sensor_from_level
+    steps = None
+    if odometry is not None:
+        steps = level_from_sensor[:-1] @ odometry(kept) @ sensor_from_level[1:]
+    is_tied = joins.find_tied(scan_ids, optimised)
+    jumps = joins.find_map_jumps(t_ns[kept], world_from_cloud, is_tied, steps, clouds)
+    recorded = survey.priors[kept] @ sensor_from_level
+    scale, sigma = pose_scale.estimate_scale(scan_ids, recorded, optimised.edges)
+    xyz_m = world_from_sensor[:, :3, 3]
+    lean = state_witness("lean", pose_lean.measure_lean_deg(xyz_m))
+    height_m = float(np.ptp(np.percentile(xyz_m[:, 2], _ALL_BUT)))
     return [
-        f"only {n_kept:,} of {len(asked):,} scans fit one another where their poses put them: the"
-        " clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may"
-        f" be wrong{carried}"
+        *_measure_jumps(jumps, scan_ids, t_ns[kept]),
+        state_witness("scale", _surely_off(scale, sigma), scale=scale, sigma=sigma),
+        lean,
+        # where the map leans heights say nothing
+        state_witness("storeys", 0.0 if lean.is_beyond else height_m),
+        *_measure_places(world_from_cloud, clouds),
     ]
+
+
+def _surely_off(scale: float, sigma: float) -> float:
+    """Return how far a scale is off 1 at least; NaN where it is not known."""
+    return float(np.clip(abs(scale - 1) - _SURE * sigma, 0.0, None))
+
+
+def _measure_jumps(
+    jumps: Sequence[joins.MapJump], scan_ids: IntArray, t_ns: IntArray
+) -> list[Measured]:
+    """Return the longest and the widest of jumps."""
+    found = []
+    for name, sizes in (
+        ("map jump", [jump.shift_m for jump in jumps]),
+        ("map turn", [jump.turn_deg for jump in jumps]),
+    ):
+        if not sizes:
+            found.append(state_witness(name, 0.0))
+            continue
+        worst = jumps[int(np.argmax(sizes))]
+        n_jumps = int(np.sum(np.array(sizes) > WITNESSES[name].limit))
+        found.append(
+            state_witness(
+                name,
+                max(sizes),
+                n_jumps=n_jumps,
+                turn_deg=worst.turn_deg,
+                after_s=(t_ns[worst.row] - t_ns[0]) / 1e9,
+                scan_id=int(scan_ids[worst.row]),
+                by=worst.by,
+            )
+        )
+    return found
+
+
+def _measure_places(world_from_cloud: FloatArray, clouds: PreparedScans) -> list[Measured]:
+    """Return how places that the drive passed twice contradict each other."""
+    from scanplan.registration.drift import folds  # scipy's 0.3 s
+
+    way_m = measure_way(world_from_cloud)
+    is_station = loops.choose_stations(world_from_cloud, _STATION_M)
+    pieces = [rows[is_station[rows]] for rows in submaps.cut_way(way_m, _SUBMAP_M)]
+    maps = submaps.make_submaps([rows for rows in pieces if len(rows)], clouds, world_from_cloud)
+    return folds.measure_folds(maps, world_from_cloud, way_m, drifts=False)

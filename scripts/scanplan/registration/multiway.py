@@ -15,6 +15,7 @@ from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.loops import RowPair
 from scanplan.registration.registration_settings import PoseGraphSettings, SequentialSettings
+from scanplan.stage.witnesses import Measured
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
@@ -41,8 +42,8 @@ class OptimisedMap:
         other; NaN where they were not optimised together.
     recorded : str
         What that is: a localiser's poses, or odometry's motions.
-    doubts : tuple of str
-        What cannot be if the map is right, in sentences.
+    witnesses : tuple of witnesses.Measured
+        What was measured to find whether the map can be.
     """
 
     world_from_cloud: FloatArray
@@ -52,7 +53,7 @@ class OptimisedMap:
     prior_weight: FloatArray
     covariance: FloatArray
     recorded: str = "the localiser's poses"
-    doubts: tuple[str, ...] = ()
+    witnesses: tuple[Measured, ...] = ()
 
     def without(self, scan_ids: IntArray) -> "OptimisedMap":
         """Return the map without the constraints of some scans."""

@@ -1,6 +1,6 @@
 """Scans prepared for registration: voxel means, normals, a search tree; and how far two overlap."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,6 +9,7 @@ import small_gicp
 from scanplan.geometry import se3
 from scanplan.geometry.occupied_cells import number_occupied
 from scanplan.geometry.tolerances import FACING
+from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -55,6 +56,39 @@ class PreparedCloud:
         """
         index, squared_m2 = self.tree.batch_knn_search(xyz_m, 1)
         return index[:, 0].astype(np.int64), squared_m2[:, 0]
+
+
+@dataclass(frozen=True)
+class PreparedScans:
+    """Scans of a cache, prepared when they are asked for.
+
+    Attributes
+    ----------
+    thinned : scan_cache.ScanCache
+        The points that `prepare_cloud` takes.
+    planar : bool
+    reach_m : float
+        See `prepare_cloud`.
+    rows : (n,) int, optional
+        Which of the cache; by default all.
+    """
+
+    thinned: ScanCache
+    planar: bool
+    reach_m: float
+    rows: IntArray | None = None
+
+    def take(self, rows: IntArray) -> "PreparedScans":
+        """Return those of some rows (k,), which then count from 0."""
+        return replace(self, rows=rows if self.rows is None else self.rows[rows])
+
+    def __call__(self, rows: IntArray) -> list[PreparedCloud]:
+        """Return the clouds of some rows (k,)."""
+        of_cache = rows if self.rows is None else self.rows[rows]
+        return [
+            prepare_cloud(xyz_m, planar=self.planar, reach_m=self.reach_m)
+            for xyz_m in self.thinned.part(of_cache.tolist())
+        ]
 
 
 def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArray:

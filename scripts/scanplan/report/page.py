@@ -87,7 +87,7 @@ def report_page(
         prediction=wording.prediction_sentence(survey.prediction),
         contradictions=[
             *plan.doubted.damage,
-            *wording.list_contradictions(plan, survey.prediction),
+            *wording.list_contradictions(plan),
             *doubts.list_unrated(plan),
         ],
         facts=wording.head_figures(plan, survey),

@@ -36,7 +36,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f" {page_tables.wall_lengths_m(plan).sum():,.1f} m"
     )
     doubts = [
-        *wording.list_contradictions(plan, survey.prediction),
+        *wording.list_contradictions(plan),
         *_count_doubts(plan),
         *list_unrated(plan),
     ]

@@ -42,16 +42,12 @@ def prediction_sentence(prediction: PredictionFacts) -> str:
     )
 
 
-def list_contradictions(plan: floorplan.FloorPlan, prediction: PredictionFacts) -> list[str]:
+def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
     """Return what speaks against all of a plan, and corrections not carried out, in sentences."""
-    found = list(plan.doubted.contradictions)
-    found += [f"a correction by hand has no effect: {why}" for why in plan.unmatched_corrections]
-    if not prediction.absent and prediction.share < 0.5:
-        found.append(
-            "most rays of scans that were not used contradict the plan: only"
-            f" {prediction.share:.0%} of them end where it says"
-        )
-    return found
+    return [
+        *plan.doubted.contradictions,
+        *(f"a correction by hand has no effect: {why}" for why in plan.unmatched_corrections),
+    ]
 
 
 def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[str, str]]:

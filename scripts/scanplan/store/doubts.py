@@ -45,6 +45,10 @@ class Doubts:
             tuple(dict.fromkeys((*self.contradictions, *contradictions))),
         )
 
+    def join(self, others: "Doubts") -> "Doubts":
+        """Return these and others, each sentence once."""
+        return self.add(others.damage, others.contradictions)
+
     def as_notes(self) -> dict[str, str]:
         """Return the notes of a table that say so; none where there is no doubt."""
         return {_NOTE: json.dumps([self.damage, self.contradictions])} if self else {}

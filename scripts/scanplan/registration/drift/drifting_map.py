@@ -56,7 +56,8 @@ def optimise_drifting_poses(
         drift=drift,
     )
     way_m = odometry.measure_way(odometry_from_cloud)
-    maps = _make_submaps(way_m, thinned, graph.poses, planar, limits, drift.submap_m)
+    clouds = prepared_clouds.PreparedScans(thinned, planar, neighbour_reach_m(limits))
+    maps = submaps.make_submaps(submaps.cut_way(way_m, drift.submap_m), clouds, graph.poses)
     doubtful_m = odometry.measure_doubtful_way(scan_ids, way_m, graph.sequence)
     closer = closing.LoopCloser(scan_ids, maps, doubtful_m, drift)
     links = closer.close_loops(graph.poses, graph.solve_links, run)
@@ -77,9 +78,9 @@ def optimise_drifting_poses(
         solution.weight[len(all_edges) :],
         solution.covariance,
         recorded="odometry's motions",
-        doubts=(
-            *folds.find_loose_parts(len(scan_ids), source, target),
-            *folds.find_folds(maps, solution.world_from_scan, way_m),
+        witnesses=(
+            folds.measure_loose_parts(len(scan_ids), source, target),
+            *folds.measure_folds(maps, solution.world_from_scan, way_m),
         ),
     )
 
@@ -167,24 +168,3 @@ def _prior_information(odometry_from_cloud: FloatArray, limits: SequentialSettin
     # the one pose that is held: to a tenth of a millimetre and of a milliradian
     result[0] = np.eye(6) * 1e8
     return result
-
-
-def _make_submaps(
-    way_m: FloatArray,
-    thinned: ScanCache,
-    world_from_cloud: FloatArray,
-    planar: bool,
-    limits: SequentialSettings,
-    submap_m: float,
-) -> list[submaps.Submap]:
-    reach_m = neighbour_reach_m(limits)
-    maps = []
-    for rows in submaps.cut_way(way_m, submap_m):
-        clouds = [
-            prepared_clouds.prepare_cloud(xyz_m, planar=planar, reach_m=reach_m)
-            for xyz_m in thinned.part(rows)
-        ]
-        merged = submaps.merge_scans(rows, clouds, world_from_cloud[rows])
-        if merged is not None:
-            maps.append(merged)
-    return maps

@@ -1,4 +1,4 @@
-"""What cannot be if drifting poses are right: loose parts, and walls where floor was free."""
+"""What cannot be if a map is right: loose parts, and walls where floor was free."""
 
 from collections.abc import Sequence
 
@@ -9,11 +9,16 @@ from scipy.sparse.csgraph import connected_components
 from scanplan.geometry import se3
 from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
+from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import FloatArray, IntArray
 
+_NEAR_M = 1.5  # so near that most of what one place shows the other must show, too
+_AGAIN_M = 10.0  # of way between them: another pass
+_LEAF_M = 1.0  # a door's leaf is no wider: a longer piece of wall does not move
 
-def find_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> list[str]:
-    """Return whether parts of the drive hang on odometry alone, as a sentence.
+
+def measure_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> Measured:
+    """Return how many scans are in parts of the drive that hang on odometry alone.
 
     Parameters
     ----------
@@ -22,25 +27,18 @@ def find_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> list[s
         Rows of the scans that an alignment ties together.
     """
     ties = sparse.coo_array((np.ones(len(source)), (source, target)), shape=(n_scans, n_scans))
-    n_parts, part = connected_components(ties, directed=False)
-    if n_parts < 2:
-        return []
+    _, part = connected_components(ties, directed=False)
     size = np.sort(np.bincount(part))
     # a scan or two that fit nothing displace next to nothing
     loose = size[:-1][size[:-1] > 2]
-    if len(loose) == 0:
-        return []
-    return [
-        f"{loose.sum():,} of {n_scans:,} scans, in {len(loose)} parts of the drive, hang on the"
-        " odometry alone: no scan ties them to the others, so they may lie elsewhere (a robot that"
-        " was carried, or nothing to see on the way)"
-    ]
+    n_loose = int(loose.sum())
+    return state_witness("loose scans", n_loose, n_scans=n_scans, n_parts=len(loose))
 
 
-def find_folds(
-    maps: Sequence[Submap], world_from_cloud: FloatArray, way_m: FloatArray
-) -> list[str]:
-    """Return whether places that were passed twice contradict each other, as a sentence.
+def measure_folds(
+    maps: Sequence[Submap], world_from_cloud: FloatArray, way_m: FloatArray, *, drifts: bool = True
+) -> list[Measured]:
+    """Return how places that were passed twice contradict each other; nothing without such.
 
     Parameters
     ----------
@@ -50,6 +48,8 @@ def find_folds(
         Of all scans, as optimised.
     way_m : (n,) float
         How far the sensor had come at each.
+    drifts : bool
+        Whether their poses were odometry's, and no localiser's.
     """
     rows = np.array([submap.row for submap in maps], np.int64)
     if len(rows) < 2:
@@ -58,8 +58,9 @@ def find_folds(
     xy_m = world_from_level[:, :2, 3]
     apart_m = np.linalg.norm(xy_m[:, None] - xy_m[None], axis=2)
     driven_m = np.abs(way_m[rows][:, None] - way_m[rows][None])
-    # so near that most of what one shows the other must show, too; and another pass
-    pairs = np.argwhere(np.tril((apart_m < 1.5) & (driven_m > 10.0)))
+    pairs = np.argwhere(np.tril((apart_m < _NEAR_M) & (driven_m > _AGAIN_M)))
+    if len(pairs) == 0:
+        return []
     views = [
         (
             maps[source],
@@ -68,20 +69,16 @@ def find_folds(
         )
         for source, target in pairs.tolist()
     ]
-    # chairs that moved leave nine tenths; rooms laid over one another about half
-    is_other = np.array([recognition.compare_submaps(*view).support < 0.8 for view in views], bool)
-    # the leaf of a door is a metre wide at most: a longer piece of wall does not move
+    lacking = 1 - np.array([recognition.compare_submaps(*view).support for view in views])
     pieces_m = np.array([recognition.measure_contradiction(*view) for view in views])
-    is_contradicting = is_other | (pieces_m > 1.0)
-    n_contradicting = int(is_contradicting.sum())
-    # a long table may have been moved, at one place or at few
-    if not is_other.any() and n_contradicting <= max(1.0, 0.1 * len(views)):
-        return []
-    worst = pairs[np.argmax(np.where(is_contradicting, pieces_m, -1.0))][0]
-    x_m, y_m = xy_m[worst]
-    return [
-        f"{n_contradicting:,} of {len(views):,} places that the drive passed twice do not look"
-        f" the same (walls where floor was free), most at x = {x_m:.1f} m, y = {y_m:.1f} m: the"
-        " plan may be folded there; record a localiser's poses, or lower"
-        " advanced.registration.drift if the odometry is better than it says"
-    ]
+    x_m, y_m = xy_m[pairs[np.argmax(pieces_m)][0]]
+    n_moved = int((pieces_m > _LEAF_M).sum())
+    more = {"n_places": len(views), "x_m": x_m, "y_m": y_m}
+    kind = "drifting " if drifts else ""
+    other = state_witness(f"{kind}other place", float(np.nanmax(lacking, initial=0.0)), **more)
+    # a localiser's poses fold no corridor onto its twin, and people stand where others stood
+    if not drifts:
+        return [other]
+    # a long table may have been moved at one place
+    share = n_moved / len(views) if n_moved > 1 else 0.0
+    return [other, state_witness("moved walls", share, n_moved=n_moved, **more)]

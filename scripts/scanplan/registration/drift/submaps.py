@@ -4,7 +4,7 @@ Over so short a way the chain of scans is as good as rigid; together they are re
 single scan is not (Hess et al. 2016, "Real-time loop closure in 2D LIDAR SLAM").
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,26 @@ def cut_way(way_m: FloatArray, length_m: float) -> list[IntArray]:
     """
     piece = np.floor((way_m - way_m[0]) / length_m).astype(np.int64)
     return np.split(np.arange(len(way_m)), np.flatnonzero(np.diff(piece)) + 1)
+
+
+def make_submaps(
+    pieces: Sequence[IntArray],
+    read_clouds: Callable[[IntArray], list[PreparedCloud]],
+    world_from_cloud: FloatArray,
+) -> list[Submap]:
+    """Merge the scans of each piece of the way, but of those that show next to no wall.
+
+    Parameters
+    ----------
+    pieces : sequence of (k,) int
+        Rows of scans.
+    read_clouds : callable
+        Returns the clouds of some rows.
+    world_from_cloud : (n, 4, 4) float64
+        Of all scans.
+    """
+    found = (merge_scans(rows, read_clouds(rows), world_from_cloud[rows]) for rows in pieces)
+    return [merged for merged in found if merged is not None]
 
 
 def merge_scans(
