@@ -5,34 +5,26 @@ written anew with one mistake in all of it.
 """
 
 import json
-from functools import partial
 
 import numpy as np
 import shapely
 
-from assemble_plan import assemble_plan
-from extract_chosen_walls import extract_chosen_walls
-from faults import judging
+from faults import drives, judging, making
 from helpers import bag_making
 from helpers.default_settings import SETTINGS
-from interpolate_poses import interpolate_poses
-from observe_walls import observe_walls
-from order_scans import order_scans
-from register_scans import register_scans
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.plan import planning
 from scanplan.plan.floorplan import centrelines_m, line_shapes
 from scanplan.project import stage_settings
 from scanplan.recordings import frame_edges
 from scanplan.recordings.survey import open_survey
-from scanplan.selection import methods
-from scanplan.store import doubts, schemas, tables
+from scanplan.store import schemas, tables
 from simulate_survey import simulate_survey
 
 GROUP = "wrong units and mountings"
 _MOUNT = ((0.1, 0.0, 0.6), (0.0, 0.0, 0.0, 1.0))
 _QUARTER_TURN = (0.0, 0.0, np.sqrt(0.5), np.sqrt(0.5))
+_PARTS = ("walls", "doors", "windows", "way")
 _POSES, _CLOUDS = "/localiser", "/points"
 _NEAR_M = 0.25  # of a wall's middle: half the thickest wall and what a small drive errs by
 _LEAST_NEAR = 0.9  # of the length of the faces that a right plan draws; others are of furniture
@@ -131,7 +123,7 @@ def _judge_mistake(place, survey, floor, mistake, changes):
 def _drive_through(folder, floor):
     """Return stamps, points in the sensor's frame and base's poses of a simulated drive."""
     building = folder / f"{floor}.geojson"
-    building.write_text(json.dumps(_draw(_FLOORS[floor])))
+    building.write_text(json.dumps(drives.draw_floor(*(_FLOORS[floor][part] for part in _PARTS))))
     outputs = [folder / f"{floor}{name}" for name in (".bag", "_truth.geojson", "_a.tum", "_b.tum")]
     settings = stage_settings.select_simulation(SETTINGS)
     sensor = settings["sensor"] | {"n_azimuth": 360, "sweep": False, "rate_hz": 5.0}
@@ -143,22 +135,6 @@ def _drive_through(folder, floor):
         points = [scan.xyz_m for scan in read.scans(rows.tolist())]
     sensor_from_base = se3.invert_pose(se3.pose_matrix(*map(np.array, _MOUNT)))
     return t_ns[rows], points, poses[rows] @ sensor_from_base
-
-
-def _draw(floor):
-    def feature(shape, coordinates, **properties):
-        geometry = {"type": shape, "coordinates": coordinates}
-        return {"type": "Feature", "properties": properties, "geometry": geometry}
-
-    door = {"kind": "opening", "type": "door", "sill_m": 0, "lintel_m": 2.05}
-    window = {"kind": "opening", "type": "window", "sill_m": 0.9, "lintel_m": 2.2}
-    features = [
-        *(feature("LineString", line, kind="wall", thickness_m=t) for t, line in floor["walls"]),
-        *(feature("Point", at, width_m=width, **door) for width, at in floor["doors"]),
-        *(feature("Point", at, width_m=width, **window) for width, at in floor["windows"]),
-        feature("LineString", floor["way"], kind="waypoints"),
-    ]
-    return {"type": "FeatureCollection", "height_m": 2.5, "features": features}
 
 
 def _write_survey(
@@ -178,39 +154,11 @@ def _write_survey(
 
 def _make_plan(place, recording, floor):
     """Return which share of the faces' length lies on the floor's walls, and the doubts."""
-    files = {name: place / f"{name}.parquet" for name in ("poses", "scans", "registration")}
-    files |= {name: place / f"{name}.parquet" for name in ("edges", "seen", "order", "segments")}
-    plan = {table: place / f"plan_{table}.parquet" for table in planning.TABLES}
-    section = partial(stage_settings.select_section, SETTINGS)
-    reading = section("input") | {"base_frame": "base_link"}
-    topics = stage_settings.select_topics(SETTINGS) | {"base_frame": "base_link"}
-    interpolate_poses([str(recording)], files["poses"], **section("poses"), **topics)
-    register_scans(
-        [str(recording)],
-        *(files[name] for name in ("poses", "scans", "registration", "edges")),
-        reading=reading,
-        settings=section("registration"),
+    found = making.make_plan(place, [str(recording)], base_frame="base_link")
+    faces = line_shapes(
+        centrelines_m(tables.read_table(place / "plan_faces.parquet", schemas.FACES))
     )
-    scanned = files["scans"], files["registration"]
-    cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
-    observe_walls(*scanned, files["seen"], settings=cells)
-    names = methods.METHODS["wall_length"].settings
-    ordering = stage_settings.select_order(SETTINGS, names)
-    others = {"observations": files["seen"]}
-    order_scans(files["scans"], files["order"], method="wall_length", others=others, **ordering)
-    stop = section("selection", "stop")
-    extract_chosen_walls(
-        *scanned,
-        files["order"],
-        files["segments"],
-        extractor="cluster_ransac",
-        settings=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
-        stop=stop,
-    )
-    settings = stage_settings.select_plan(SETTINGS)
-    assemble_plan(files["segments"], files["order"], *scanned, plan, settings=settings, **stop)
-    faces = line_shapes(centrelines_m(tables.read_table(plan["faces"], schemas.FACES)))
     walls = shapely.union_all([shapely.linestrings(line) for _, line in _FLOORS[floor]["walls"]])
     on_walls = shapely.intersection(faces, shapely.buffer(walls, _NEAR_M))
     near = shapely.length(on_walls).sum() / shapely.length(faces).sum()
-    return near, doubts.read_doubts(plan["free"], schemas.FREE)
+    return near, found
