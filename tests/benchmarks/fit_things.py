@@ -85,7 +85,8 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     for kind in sorted(set(kinds)):
         rest = _join([of for of, name in zip(found, kinds, strict=True) if name != kind])
         own = _join([of for of, name in zip(found, kinds, strict=True) if name == kind])
-        left_out.append((own, weigh(own, fit(rest)), count_shares(rest)))
+        likely = things.weigh_features(own.features, fit(rest).values())
+        left_out.append((own, likely, count_shares(rest)))
     print(_report(left_out))
 
 
@@ -139,7 +140,7 @@ def fit(of: Surfaces) -> dict[str, FloatArray]:
     shares: dict[str, FloatArray] = {}
     for column, (name, density) in enumerate(things.DENSITIES.items()):
         value = of.features[:, column]
-        known = np.isfinite(value) | np.isinf(value)
+        known = ~np.isnan(value)
         place = np.searchsorted(density.edges, value[known], "right")
         count = np.zeros((len(things.KINDS), len(density.edges) + 1))
         np.add.at(count, (of.kind[known], place), 1.0)
@@ -147,23 +148,6 @@ def fit(of: Surfaces) -> dict[str, FloatArray]:
         count += _OF_ALL * usual
         shares[name] = count / count.sum(axis=1, keepdims=True)
     return shares
-
-
-def weigh(of: Surfaces, densities: Mapping[str, FloatArray]) -> FloatArray:
-    """Return how likely each kind makes what is known of each surface, log: (n, k)."""
-    likely = np.zeros((len(of.kind), len(things.KINDS)))
-    for column, (name, density) in enumerate(things.DENSITIES.items()):
-        value = of.features[:, column]
-        place = np.searchsorted(density.edges, value, "right")
-        place = np.minimum(place, len(density.edges))
-        likely += np.where(np.isnan(value)[:, None], 0.0, np.log(densities[name].T[place]))
-    return likely
-
-
-def decide(likely: FloatArray, shares: FloatArray, temper: float) -> FloatArray:
-    """Return the probability of each kind, log: (n, k), if so much of each answer counts."""
-    weight = np.log(shares) + temper * likely
-    return weight - np.logaddexp.reduce(weight, axis=1, keepdims=True)
 
 
 def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
@@ -187,13 +171,13 @@ def _report(left_out: Sequence[tuple[Surfaces, FloatArray, FloatArray]]) -> str:
     lines = ["minus log probability of what is so, mean, by temper:"]
     for temper in _TEMPERS:
         missed = [
-            -decide(likely, shares, temper)[np.arange(len(own.kind)), own.kind]
+            -things.weigh_kinds(likely, shares, temper)[np.arange(len(own.kind)), own.kind]
             for own, likely, shares in left_out
         ]
         lines.append(f"{temper:4.1f} {np.concatenate(missed).mean():.3f}")
     metres = np.zeros((len(things.KINDS), len(things.KINDS)))
     for own, likely, shares in left_out:
-        taken = decide(likely, shares, things.TEMPER).argmax(axis=1)
+        taken = things.weigh_kinds(likely, shares, things.TEMPER).argmax(axis=1)
         np.add.at(metres, (own.kind, taken), own.length_m)
     lines.append("metres of what (rows) taken for what, of kinds of buildings that were left out:")
     lines.append(" " * 10 + "".join(f"{name:>10s}" for name in things.KINDS))

@@ -49,18 +49,19 @@ def test_what_was_never_seen_leaves_all_ranges_alike():
 def test_surfaces_are_what_they_are_likeliest_to_be():
     """With no corner a leaf is likelier three times: enough for as many, not for a seventh."""
     asked = surfaces([things.WALL] * 3, n_inner=[2, 0, NAN])
-    likely = fit_things.weigh(asked, fit_things.fit(LEARNT))
+    likely = things.weigh_features(asked.features, fit_things.fit(LEARNT).values())
     shares = np.array([0.7, 0.1, 0.1, 0.1])
-    assert fit_things.decide(likely, shares, 1.0).argmax(axis=1).tolist() == [things.WALL] * 3
-    alike = fit_things.decide(likely, np.full(4, 0.25), 1.0)
+    assert things.weigh_kinds(likely, shares, 1.0).argmax(axis=1).tolist() == [things.WALL] * 3
+    alike = things.weigh_kinds(likely, np.full(4, 0.25), 1.0)
     assert alike.argmax(axis=1)[:2].tolist() == [things.WALL, things.LEAF]
     np.testing.assert_allclose(np.exp(alike).sum(axis=1), 1)
 
 
 def test_where_no_answer_counts_shares_are_all_that_is_known():
     shares = np.array([0.7, 0.1, 0.1, 0.1])
-    likely = fit_things.weigh(surfaces([0], n_inner=[0]), fit_things.fit(LEARNT))
-    np.testing.assert_allclose(np.exp(fit_things.decide(likely, shares, 0.0)), [shares])
+    asked = surfaces([0], n_inner=[0])
+    likely = things.weigh_features(asked.features, fit_things.fit(LEARNT).values())
+    np.testing.assert_allclose(np.exp(things.weigh_kinds(likely, shares, 0.0)), [shares])
 
 
 def test_the_table_reads_as_that_of_the_package():

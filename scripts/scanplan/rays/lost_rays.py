@@ -1,7 +1,7 @@
 """Rays that reached a surface and came back from nowhere, by heights: what glass does to them."""
 
 import itertools
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,20 +14,19 @@ _BANDS = 2  # rows that are asked together: of single ones too little is expecte
 _TINY = 1e-9  # rays: none
 
 
-@dataclass(frozen=True, eq=False)
-class LostRays:
+class LostRays(NamedTuple):
     """How many rays of single scans are missing at the cells of a surface.
 
     Attributes
     ----------
     scan, column, row : (n,) int64
-    count : (n,) float64
+    n_rays : (n,) float64
     """
 
     scan: IntArray
     column: IntArray
     row: IntArray
-    count: FloatArray
+    n_rays: FloatArray
 
 
 def find_lost(
@@ -62,10 +61,4 @@ def find_lost(
             own = np.minimum(of_row[view, column], sent.expected[view, column])
             row = np.full(len(view), first + number)
             found.append(LostRays(scan, column, row, own * of_band))
-    return LostRays(
-        *(
-            np.concatenate([getattr(part, name) for part in found])
-            for name in ("scan", "column", "row")
-        ),
-        count=np.concatenate([part.count for part in found]),
-    )
+    return LostRays(*map(np.concatenate, zip(*found, strict=True)))

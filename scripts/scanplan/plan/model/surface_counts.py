@@ -153,7 +153,7 @@ def _count_side(
     known = np.flatnonzero((column >= 0) & rays.is_level[lost.scan])
     of_lost = (place[lost.scan[known]], column[known], lost.row[known], 1, LOST)
     ended = np.append(ended, np.ravel_multi_index(np.broadcast_arrays(*of_lost), shape))
-    number = np.append(np.ones(len(kept)), lost.count[known])
+    number = np.append(np.ones(len(kept)), lost.n_rays[known])
     key, inverse = np.unique(ended, return_inverse=True)
     weight = np.bincount(inverse, number, len(key)).astype(float)  # of nothing it counts in int
     # what one place says of a cell is one witness

@@ -5,10 +5,11 @@ independent of one another but for one exponent, and what is not known of a surf
 further kind of thing is a further column.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from scanplan.plan.model.surface_features import Features
 from scanplan.types import FloatArray
@@ -156,11 +157,39 @@ def weigh_things(found: Features) -> FloatArray:
     ----------
     found : surface_features.Features
     """
-    likely = np.log(SHARES)
-    for name, density in DENSITIES.items():
-        value = getattr(found, name)
-        if not np.isnan(value):
-            place = int(np.searchsorted(density.edges, value, "right"))
-            likely = likely + TEMPER * np.log([shares[place] for shares in density.shares])
-    weight = np.exp(likely - likely.max())
-    return weight / weight.sum()
+    values = np.array([[getattr(found, name) for name in DENSITIES]], float)
+    likely = weigh_features(values, [density.shares for density in DENSITIES.values()])
+    return np.exp(weigh_kinds(likely, SHARES, TEMPER))[0]
+
+
+def weigh_features(values: FloatArray, shares: Iterable[ArrayLike]) -> FloatArray:
+    """Return how likely each kind makes what is known of surfaces, log: (n, 4).
+
+    Parameters
+    ----------
+    values : (n, f) float64
+        Of each surface the features, in the order of `DENSITIES`; NaN of what is not known.
+    shares : iterable of (4, e + 1) array_like
+        Of each feature the shares of its ranges.
+    """
+    likely = np.zeros((len(values), len(KINDS)))
+    for value, density, of_kinds in zip(values.T, DENSITIES.values(), shares, strict=True):
+        of_each = np.transpose(of_kinds)[np.searchsorted(density.edges, value, "right")]
+        likely += np.where(np.isnan(value)[:, None], 0.0, np.log(of_each))
+    return likely
+
+
+def weigh_kinds(likely: FloatArray, shares: ArrayLike, temper: float) -> FloatArray:
+    """Return the probability of each kind, log: (n, 4).
+
+    Parameters
+    ----------
+    likely : (n, 4) float64
+        As `weigh_features` returns it.
+    shares : (4,) array_like
+        Of all surfaces.
+    temper : float
+        How much of an answer counts.
+    """
+    weight = np.log(shares) + temper * likely
+    return weight - np.logaddexp.reduce(weight, axis=1, keepdims=True)
