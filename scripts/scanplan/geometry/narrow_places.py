@@ -266,9 +266,25 @@ def _shortest_across(ground: BaseGeometry, middle_m: FloatArray) -> FloatArray |
     # every five degrees: a line that far off the shortest is no longer by a hundredth
     angle = np.radians(np.arange(0, 180, 5))
     ways = np.column_stack([np.cos(angle), np.sin(angle)])
-    across = [_line_across(ground, middle_m, way) for way in ways]
-    found = [line for line in across if line is not None]
-    return min(found, key=_length_m, default=None)
+    return _line_across(ground, middle_m, ways[np.argmin(_widths_m(ground, middle_m, ways))])
+
+
+def _widths_m(ground: BaseGeometry, place_m: FloatArray, ways: FloatArray) -> FloatArray:
+    """Return how far it is from outline to outline through a place, along unit vectors (n, 2)."""
+    corners_m, ring = shapely.get_coordinates(
+        shapely.get_parts(shapely.boundary(shapely.get_parts(ground))), return_index=True
+    )
+    along_m = (corners_m - place_m) @ ways.T
+    beside_m = (corners_m - place_m) @ np.stack([-ways[:, 1], ways[:, 0]])
+    on_left = beside_m > 0
+    edge, way = np.nonzero((on_left[1:] != on_left[:-1]) & (ring[1:] == ring[:-1])[:, None])
+    (before_m, after_m), (low_m, high_m) = (
+        (m[edge, way], m[edge + 1, way]) for m in (along_m, beside_m)
+    )
+    crossing_m = before_m + (after_m - before_m) * low_m / (low_m - high_m)
+    nearest_m = np.full((2, len(ways)), np.inf)
+    np.minimum.at(nearest_m, ((crossing_m < 0).astype(int), way), np.abs(crossing_m))
+    return nearest_m.sum(axis=0)
 
 
 def _line_across(ground: BaseGeometry, place_m: FloatArray, way: FloatArray) -> FloatArray | None:

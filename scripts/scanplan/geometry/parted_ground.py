@@ -118,9 +118,9 @@ class _PartedGround:
         cut = self._cuts[line]
         # whatever of the joined part is new, or wide for the first time, is as near as this
         reach_m = 3 * self._sliver_m * np.array([-1, -1, 1, 1])
-        around = shapely.box(*(shapely.bounds(cut) + reach_m))
-        near = overlays.intersect_areas(self._ground, around)
-        others = self._cut_tree.query(around)
+        bounds_m = shapely.bounds(cut) + reach_m
+        near = overlays.clip_areas(self._ground, *bounds_m)
+        others = self._cut_tree.query(shapely.box(*bounds_m))
         others = overlays.unite_areas(self._cuts[others[self._is_cut[others]]])
         for joined in shapely.get_parts(overlays.subtract_areas(near, others)):
             under = shapely.get_parts(overlays.intersect_areas(joined, cut))
@@ -129,9 +129,10 @@ class _PartedGround:
 
     def _join(self, joined: BaseGeometry, under: Array) -> None:
         """Make one part of all pieces in an area, and of the ground under a line that parted it."""
-        n_first = len(self._piece_tree)
-        later = np.arange(n_first, len(self._pieces))
-        near = np.concatenate([self._piece_tree.query(joined, predicate="intersects"), later])
+        first = self._piece_tree.query(joined, predicate="intersects")
+        later = self._pieces[len(self._piece_tree) :]
+        later = len(self._piece_tree) + np.flatnonzero(shapely.intersects(later, joined))
+        near = np.concatenate([first, later])
         shared_m2 = shapely.area(overlays.intersect_areas(self._pieces[near], joined))
         parts = np.unique(self._part[near[shared_m2 > SAME_M * SAME_M]])
         is_joined = np.isin(self._part, parts)
@@ -150,7 +151,7 @@ class _PartedGround:
         first = len(self._pieces)
         visited = np.unique(self._visit_tree.query(pieces, predicate="contains")[0])
         is_visited = np.isin(np.arange(len(pieces)), visited)
-        piece, line = self._beside_tree.query(pieces)
+        piece, line = self._beside_tree.query(pieces, predicate="intersects")
         shared_m2 = shapely.area(
             overlays.intersect_areas(pieces[piece], self._beside_tree.geometries[line])
         )

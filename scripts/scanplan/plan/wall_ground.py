@@ -122,6 +122,8 @@ def find_bare_spans(
 def _kind_beyond(ends_m: FloatArray, room: Polygon, floor: BaseGeometry) -> str:
     """Return what a span is by what lies beyond it."""
     beside = overlays.buffer_shapes(shapely.LineString(ends_m), 2 * END_M, cap_style="flat")
+    # of what is far off an overlay would look at every corner, too
+    room, floor = overlays.clip_areas(np.array([room, floor], object), *beside.bounds)
     beyond = overlays.subtract_areas(beside, room)
     seen_m2 = overlays.intersect_areas(beyond, floor).area
     return GAP if seen_m2 > beyond.area - seen_m2 else UNSEEN

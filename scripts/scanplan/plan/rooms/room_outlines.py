@@ -78,11 +78,11 @@ def find_rooms(
     way = bare_parts.draw_way(track_m, END_M)
     facing = wall_ground.ground_before(walls, unpaired_m)
     found: list[tuple[Polygon, float, bool]] = []
-    occupied: BaseGeometry = MultiPolygon()
+    taken: BaseGeometry = solid
     for part in _large_parts(seen, min_area_m2):
         if planar:
             part = _without_shadows(part, solid)
-        drawn, outline = _draw_room(part, track, walls, strips, solid, occupied, unpaired_m)
+        drawn, outline = _draw_room(part, track, walls, strips, solid, taken, unpaired_m)
         polygons = [] if drawn is None else [drawn]
         if planar and drawn is not None and drawn.intersects(way):
             polygons = bare_parts.cut_bare_parts(
@@ -99,7 +99,7 @@ def find_rooms(
             is_room = is_entered or (walled >= min_walled and is_wide)
             if is_room and polygon.area >= min_area_m2:
                 found.append((polygon, walled, is_entered))
-                occupied = free_space.union_on_grid([occupied, polygon])
+                taken = free_space.union_on_grid([taken, polygon])
     all_views = np.array(views, object)
     counts = workers.map_in_threads(lambda of: count_scans(of[0], all_views), found, threads)
     rooms = [Room(*of, count) for of, count in zip(found, counts, strict=True)]
@@ -117,7 +117,7 @@ def count_scans(polygon: Polygon, all_views: Array) -> int:
         What each scan saw.
     """
     near = all_views[shapely.intersects(polygon, all_views)]
-    seen_m2 = shapely.area(overlays.intersect_areas(polygon, near))
+    seen_m2 = shapely.area(overlays.intersect_areas(polygon, near, grid=free_space.GRID_M))
     return int((seen_m2 >= CORNER_M**2).sum())
 
 
@@ -144,7 +144,7 @@ def _draw_room(
     walls: Sequence[PlanWall],
     strips: Sequence[Polygon],
     solid: BaseGeometry,
-    occupied: BaseGeometry,
+    taken: BaseGeometry,
     unpaired_m: float,
 ) -> tuple[Polygon | None, BaseGeometry]:
     """Return the polygon of a part of the floor, and the ground along its walls.
@@ -156,13 +156,12 @@ def _draw_room(
     if rows:
         outline = overlays.buffer_shapes(overlays.unite_areas([strips[row] for row in rows]), END_M)
     drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
-    others = free_space.union_on_grid([solid, occupied])
-    polygon = _largest(free_space.difference_on_grid(drawn, others))
+    polygon = _largest(free_space.difference_on_grid(drawn, taken))
     shapely.prepare(part)
     visits = track[shapely.contains(part, track)]
     if polygon is not None and (shapely.distance(polygon, visits) > CORNER_M).any():
         polygon = _largest(
-            free_space.difference_on_grid(overlays.simplify_shapes(part, CELL_M), others)
+            free_space.difference_on_grid(overlays.simplify_shapes(part, CELL_M), taken)
         )
     return polygon, outline
 
