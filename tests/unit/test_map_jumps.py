@@ -79,6 +79,26 @@ def test_after_a_long_pause_a_robot_may_be_anywhere():
     assert joins.find_map_jumps(late_ns, jumped(3.0), is_tied_but(4), None, clouds_at(TRUE)) == []
 
 
+def see_a_line(rows):
+    """What tells no place from another."""
+    line_m = np.column_stack([np.linspace(-9, 9, 300), np.full(300, 1.0), np.zeros(300)])
+    return [prepare_cloud(line_m, planar=True) for _ in rows]
+
+
+def test_where_scans_tell_nothing_a_walk_leads_no_farther():
+    (found,) = joins.find_map_jumps(T_NS, jumped(3.0), is_tied_but(4), None, see_a_line)
+    assert found.by == "the pace of a walk" and found.turn_deg == pytest.approx(0, abs=1e-6)
+    # of 3 m and a step of 2/7 m half a metre and a second's way are none
+    assert found.shift_m == pytest.approx(3 + 2 / 7 - 0.5 - 1.5)
+    assert joins.find_map_jumps(T_NS, jumped(1.6), is_tied_but(4), None, see_a_line) == []
+
+
+def test_stamps_of_when_a_log_was_written_tell_no_pace():
+    fast = planar_poses(np.column_stack([np.arange(8) * 4.0, np.zeros(8)]), np.zeros(8))
+    written_ns = np.arange(8)
+    assert joins.find_map_jumps(written_ns, fast, is_tied_but(4), None, see_a_line) == []
+
+
 def edges_of(poses, scale, noise_m, seed=0):
     """Alignments of each pose to the one before, of ranges of some scale."""
     rng = np.random.default_rng(seed)

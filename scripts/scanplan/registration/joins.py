@@ -1,11 +1,12 @@
 """Where a map jumps: scans that no alignment ties to those before them, and lie elsewhere.
 
 Where the sensor went from one scan to the next odometry knows, or what the scans on both sides
-show: their submaps are searched for on one another, wherever the map has them.
+show: their submaps are searched for on one another, wherever the map has them. Where neither does,
+it went no farther than a walk leads.
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,7 +23,9 @@ _LONGEST_S = 10.0  # between two scans: later a robot may be anywhere
 _SPEED_M_S = 1.5  # ASSUME of rovers and of people who carry a sensor, indoors
 _LEAST_FITNESS = 0.5  # of what an alignment shares: a scan 2 m aside was aligned with 0.31
 _LEAST_SUPPORT = 0.8  # of what both sides see, where they are right: one of 0.9 has moved chairs
-_ODOMETRY, _SCANS, _NOTHING = "odometry", "the scans on both sides", ""
+_NEAR_M = 0.5  # that a map may be off between two scans, however little later
+_ODOMETRY, _SCANS, _PACE = "odometry", "the scans on both sides", "the pace of a walk"
+_NOTHING = ""
 
 
 class MapJump(NamedTuple):
@@ -95,6 +98,10 @@ def find_map_jumps(
         found = _match_sides(loose[i], apart_s[i], loose, world_from_cloud, read_clouds)
         if found is not None:
             known[i], by[i] = found, _SCANS
+    for i in _find_too_fast(t_ns, world_from_cloud)[loose - 1].nonzero()[0]:
+        if by[i] == _NOTHING:
+            known[i], by[i] = motion[i], _PACE
+            known[i, :2, 3] *= _reach_m(apart_s[i]) / np.hypot(*motion[i, :2, 3])
     off_m = np.linalg.norm((motion - known)[:, :2, 3], axis=1)
     turn_deg = np.degrees([se3.turn_between_rad(*pair) for pair in zip(known, motion, strict=True)])
     return [
@@ -102,6 +109,20 @@ def find_map_jumps(
         for i, one in enumerate(by)
         if one != _NOTHING
     ]
+
+
+def _find_too_fast(t_ns: IntArray, world_from_cloud: FloatArray) -> BoolArray:
+    """Return which steps (n - 1,) are longer than a walk; none where stamps do not say so."""
+    apart_s = np.diff(t_ns) / 1e9
+    step_m = np.hypot(*np.diff(world_from_cloud[:, :2, 3], axis=0).T)
+    is_long = step_m > _reach_m(apart_s)
+    # a log's stamps may be of when it was written
+    return is_long & (apart_s <= _LONGEST_S) & (2 * is_long.sum() <= len(is_long))
+
+
+def _reach_m(apart_s: Any) -> Any:
+    """Return how far apart two scans may be so many seconds later."""
+    return _NEAR_M + _SPEED_M_S * apart_s
 
 
 def _match_sides(
@@ -138,7 +159,7 @@ def _match_sides(
         before,
         # as if it had stood still
         before_from_cloud @ se3.invert_pose(after_from_cloud),
-        reach_m=0.5 + _SPEED_M_S * apart_s,
+        reach_m=_reach_m(apart_s),
         turn_rad=np.pi,
     )
     if found is None:

@@ -115,15 +115,15 @@ WITNESSES = {
     "map jump": Witness(
         0.2,
         _METRES,
-        "the map jumps {n_jumps} times, at most by {value} and {turn_deg:.0f} degrees before scan"
-        " {scan_id}, {after_s:.0f} s after the first, according to {by}",
+        "the map jumps by {value} and {turn_deg:.0f} degrees before scan {scan_id}, {after_s:.0f} s"
+        " after the first, according to {by} (jumps in all: {n_jumps})",
         _OTHER_MAP,
     ),
     "map turn": Witness(
         5.0,
         _DEGREES,
-        "the map turns {n_jumps} times, at most by {value} before scan {scan_id}, {after_s:.0f} s"
-        " after the first, according to {by}",
+        "the map turns by {value} before scan {scan_id}, {after_s:.0f} s after the first, according"
+        " to {by} (turns in all: {n_jumps})",
         _OTHER_MAP,
     ),
     "scale": Witness(
