@@ -37,7 +37,7 @@ from scanplan.plan.rooms.unseen_floor import leave_out_unseen
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
-from scanplan.rays import free_space, range_bias
+from scanplan.rays import free_space, lintels, range_bias
 from scanplan.rays.face_observation import RaySettings
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
@@ -189,6 +189,8 @@ def make_plan(
         Without any row of faces or walls where nothing is supported enough.
     """
     up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
+    if not rays.planar:
+        rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
     errors_m = range_bias.estimate_range_bias(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )

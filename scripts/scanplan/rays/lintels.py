@@ -1,0 +1,94 @@
+"""The floor by the lintels of doors that were driven through, where no floor was seen.
+
+A sensor that looks upward sees no floor, and the lowest that it sees are tables. Doors are as high
+everywhere.
+"""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import shapely
+
+from scanplan.rays import levels
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import Array, FloatArray
+
+_LINTEL_M = 2.05  # DIN 18101: openings of 2.005 and 2.13 m; 2.03 and 2.13 where doors are in feet
+_LEAST_PLACES = 2  # one may be the arch of a hall
+_DOUBT_M = 0.2  # doors of old houses, and of some countries, differ by so much
+_AT_M, _BESIDE_M = 0.06, 0.2  # of a crossing: what errs, and half of a narrow door's width
+_ABOVE_M, _BELOW_M = 0.2, 0.5  # the sensor: there a door is closed, and there it is open
+_LEAST_RETURNS = 4
+_OPEN_SHARE = 0.1  # of the returns above may lie below: edges, people
+_LOW_PERCENT = 5
+_PLACE_M = 1.0
+_STEP_M = 1.5  # farther apart nobody knows where the sensor went
+
+
+def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatArray) -> float:
+    """Return the height of the floor: as it was seen, or else as the doors driven through have it.
+
+    Parameters
+    ----------
+    rays : ray_set.RaySet
+        In space.
+    segments : dict of str to (n,) array
+        `scan_id`, `x0_m`, `y0_m`, `x1_m`, `y1_m` of walls that those scans saw.
+    track_m : (k, 2) float64
+        Where the sensor was, one place after the other.
+
+    Returns
+    -------
+    float
+        `rays.floor_z_m` where a floor was seen, too few doors were driven through, or both agree.
+    """
+    seen_z_m, _ = levels.find_floor_and_ceiling(rays.xyz_m[:, 2])
+    if np.isfinite(seen_z_m) or len(track_m) < 2:
+        return rays.floor_z_m
+    found = np.array(list(_find_lintels(rays, segments, track_m))).reshape(-1, 3)
+    place = np.unique(np.round(found[:, :2] / _PLACE_M), axis=0, return_inverse=True)[1].ravel()
+    of_places = [float(np.median(found[place == of, 2])) for of in np.unique(place)]
+    if len(of_places) < _LEAST_PLACES:
+        return rays.floor_z_m
+    floor_z_m = float(np.median(of_places)) - _LINTEL_M
+    return rays.floor_z_m if abs(rays.floor_z_m - floor_z_m) <= _DOUBT_M else floor_z_m
+
+
+def _find_lintels(
+    rays: RaySet, segments: Mapping[str, Array], track_m: FloatArray
+) -> Iterator[tuple[float, float, float]]:
+    """Yield where the sensor went below what it saw of a wall, and how high that begins."""
+    begin_m, end_m = (
+        np.column_stack([segments[f"x{end}_m"], segments[f"y{end}_m"]]) for end in (0, 1)
+    )
+    way = (end_m - begin_m) / np.linalg.norm(end_m - begin_m, axis=1, keepdims=True)
+    scan = np.searchsorted(rays.scan_ids, segments["scan_id"])
+    for row, place_m in _cross(np.stack([begin_m, end_m], axis=1), track_m):
+        of = scan[row]
+        xyz_m = rays.xyz_m[rays.first[of] : rays.first[of + 1]]
+        away_m = xyz_m[:, :2] - place_m
+        is_near = np.abs(away_m @ (-way[row, 1], way[row, 0])) <= _AT_M
+        is_near &= np.abs(away_m @ way[row]) <= _BESIDE_M
+        z_m = xyz_m[is_near, 2] - rays.sensors_m[of, 2]
+        above_m = z_m[z_m > _ABOVE_M]
+        n_below = int(((z_m <= _ABOVE_M) & (z_m > -_BELOW_M)).sum())
+        if len(above_m) >= _LEAST_RETURNS and n_below <= _OPEN_SHARE * len(above_m):
+            lintel_m = float(np.percentile(above_m, _LOW_PERCENT))
+            yield *place_m.tolist(), float(rays.sensors_m[of, 2]) + lintel_m
+
+
+def _cross(ends_m: FloatArray, track_m: FloatArray) -> Iterator[tuple[int, FloatArray]]:
+    """Yield the row of each segment (n, 2, 2) that a track crosses steeply, and where."""
+    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
+    steps_m = steps_m[np.linalg.norm(steps_m[:, 1] - steps_m[:, 0], axis=1) <= _STEP_M]
+    tree = shapely.STRtree(np.asarray(shapely.linestrings(steps_m)))
+    rows, steps = tree.query(np.asarray(shapely.linestrings(ends_m)), predicate="intersects")
+    for row, step in zip(rows.tolist(), steps.tolist(), strict=True):
+        (begin_m, end_m), (from_m, to_m) = ends_m[row], steps_m[step]
+        way, gone_m = end_m - begin_m, to_m - from_m
+        across = way[0] * gone_m[1] - way[1] * gone_m[0]
+        # at 30 degrees, or steeper
+        if abs(across) >= np.linalg.norm(way) * np.linalg.norm(gone_m) / 2 > 0:
+            away_m = begin_m - from_m
+            share = (way[0] * away_m[1] - way[1] * away_m[0]) / across
+            yield row, from_m + share * gone_m
