@@ -37,18 +37,18 @@ def with_door(made, low_m, high_m, kind="door"):
 class TestCorners:
     def test_a_wall_of_a_room_has_inner_corners(self):
         """Seen from inside, the next walls come forward at both ends."""
-        assert look(box()).n_inner == 2
+        assert (look(box()).n_inner, look(box()).n_outer) == (2, 0)
 
-    def test_a_side_of_a_cupboard_has_none(self):
+    def test_a_side_of_a_cupboard_has_outer_ones(self):
         """Seen from outside, its other sides go back."""
         around = [(0, 0), (0, 1), (1, 1), (1, 0), (0, 0)]
         sides = [wall(*a, *b, NAN) for a, b in pairwise(around)]
-        assert look(sides).n_inner == 0
+        assert (look(sides).n_inner, look(sides).n_outer) == (0, 2)
 
-    def test_a_niche_has_one(self):
+    def test_a_niche_has_one_of_each(self):
         """Along +x, seen from the north: a wall comes forward at its begin, another goes back."""
         walls = [wall(0, 0, 2, 0, NAN), wall(0, 2, 0, 0, NAN), wall(2, 0, 2, -2, NAN)]
-        assert look(walls).n_inner == 1
+        assert (look(walls).n_inner, look(walls).n_outer) == (1, 1)
 
     def test_what_goes_on_straight_or_far_away_is_no_corner(self):
         walls = [wall(0, 0, 2, 0, NAN), wall(2, 0, 4, 0, NAN), wall(-0.5, 2, -0.5, 0, NAN)]
@@ -192,10 +192,10 @@ class TestEnds:
     def test_it_is_the_nearer_end_to_the_body_of_another_wall(self):
         """One ends 0.3 m from the middle of a wall of 0.2 m, the other 1 m from one."""
         walls = [wall(0, 0, 3, 0, NAN), wall(3.3, -1, 3.3, 1, 0.2), wall(-1, 1, -1, -1, NAN)]
-        assert look(walls).end_m == pytest.approx(0.2)
+        assert look(walls).joint_m == pytest.approx(0.2)
 
     def test_what_stands_alone_ends_nowhere(self):
-        assert math.isinf(look([wall(0, 0, 3, 0, NAN), wall(6, 0, 9, 0, NAN)]).end_m)
+        assert math.isinf(look([wall(0, 0, 3, 0, NAN), wall(6, 0, 9, 0, NAN)]).joint_m)
 
 
 class TestBack:

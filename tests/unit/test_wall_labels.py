@@ -14,15 +14,16 @@ from helpers.label_making import (
     with_hole,
 )
 from scanplan.plan.model import things
-from scanplan.plan.model.surface_counts import BEYOND, FACE, SHALLOW
+from scanplan.plan.model.surface_counts import BEYOND, FACE, SHALLOW, add_passages
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.model.wall_labels import count_wall, label_wall
 
 MAX_OPENING_M = 2.0
+NO_WAY_M = np.empty((0, 2))
 
 
 def parts(wall, looked):
-    return list(label_wall(wall, looked, max_opening_m=MAX_OPENING_M))
+    return list(label_wall(wall, looked, NO_WAY_M, max_opening_m=MAX_OPENING_M))
 
 
 def spans_x(spans):
@@ -112,6 +113,28 @@ class TestParts:
         np.testing.assert_allclose([(g.low_m, g.high_m) for g in part.closed], [(2, 3)])
 
 
+class TestWaysThrough:
+    """Nobody can see whether there is a door from 1 to 2 m of a wall, but somebody went there."""
+
+    @staticmethod
+    def look(track_m):
+        wall, looked = paired(scans_at(5, solid), [(0, 1), (2, 5)], length_m=5.0)
+        counts = count_wall(wall, looked)
+        found = add_passages(counts, wall.line, looked, np.array(track_m))
+        return counts, (found.ends - counts.ends).sum(axis=(1, 2))
+
+    def test_where_a_sensor_was_carried_through_it_is_free(self):
+        counts, added = self.look([(1.5, 1.0), (1.5, 0.3), (1.5, -0.9), (3.0, -0.9)])
+        is_way = np.abs(counts.middles_m - 1.5) < 0.2
+        assert (added[is_way, BEYOND] > 0).all() and (added[~is_way] == 0).all()
+
+    @pytest.mark.parametrize(
+        "track_m", [[(1.5, 3.0), (1.5, -3.0)], [(0.0, 0.1), (1.4, -0.1)], [(1.5, 2.0), (1.5, 1.0)]]
+    )
+    def test_a_long_step_a_way_along_it_and_one_that_stays_say_nothing(self, track_m):
+        assert (self.look(track_m)[1] == 0).all()
+
+
 class TestLowParts:
     """A wall of 5 m that is 1.1 m high from x = 3 on: there rays pass over it."""
 
@@ -131,12 +154,12 @@ class TestLowParts:
         asked = []
 
         def keep(features):
-            asked.append(features)
-            return np.eye(4)[things.WALL]
+            asked.extend(features)
+            return np.eye(4)[[things.WALL] * len(features)]
 
         monkeypatch.setattr(things, "weigh_things", keep)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, max_opening_m=MAX_OPENING_M)
+        found = label_surfaces([wall], looked, NO_WAY_M, max_opening_m=MAX_OPENING_M)
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)
         assert [features.overlooked for features in asked] == [0, pytest.approx(1, abs=0.05)]
         assert np.isnan(found.tops_m).all()
@@ -144,7 +167,7 @@ class TestLowParts:
     def test_it_stays_where_both_sides_were_seen(self):
         scans = self.look() + self.look(SOUTH_M, -0.2)
         wall, looked = paired(scans, [(0, 5)], [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, max_opening_m=MAX_OPENING_M)
+        found = label_surfaces([wall], looked, NO_WAY_M, max_opening_m=MAX_OPENING_M)
         assert [round(part.length_m, 1) for part in found.walls] == [3, 2]
         assert found.tops_m == pytest.approx([np.nan, 1.1], nan_ok=True)
 

@@ -338,7 +338,7 @@ class _Survey:
         open_leaves_m: list[FloatArray] = []
         if self.labels:
             labelled = label_surfaces(
-                *(walls, self.rays),
+                *(walls, self.rays, self.track_m),
                 max_opening_m=self.settings.openings.max_opening_m,
             )
             walls, tops_m = labelled.walls, labelled.tops_m

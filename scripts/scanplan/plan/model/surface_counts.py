@@ -28,6 +28,8 @@ FACE, SHALLOW, DEEP, BEYOND, LOST = range(5)
 N_ENDS = 5
 _SHALLOW_M = 0.12  # leaves of doors hang no deeper, panes and the far sides of reveals do
 _SQUARE = np.tan(np.radians(10))  # a pane answers no farther from square: beams of 3 mrad on glass
+_CARRIER_M = 0.4  # width of the slimmest robots and people that carry a sensor
+_STEP_M = 1.5  # between two places farther apart the way is not known
 _PLACE_M = 0.5  # scans no farther apart are one place: what they see differs by less than a door
 
 
@@ -118,6 +120,38 @@ def count_ends(
     for side in sides:
         total += _count_side(rays, grid, side, place, is_only=is_only)
     return SurfaceCounts(low_m, total)
+
+
+def add_passages(
+    counts: SurfaceCounts, wall: Line, rays: RaySet, track_m: FloatArray
+) -> SurfaceCounts:
+    """Return counts with one more witness of what is open: whoever carried the sensor through.
+
+    Parameters
+    ----------
+    counts : SurfaceCounts
+    wall : lines.Line
+        Along which columns were counted.
+    rays : ray_set.RaySet
+        Its sensors tell how high the sensor was carried, and so what is free at least.
+    track_m : (k, 2) float64
+        Where it was, one place after the other.
+    """
+    along_m, off_m = wall.along_m(track_m), wall.offset_m(track_m)
+    step_m, gone_m = np.diff(off_m), np.diff(along_m)
+    is_across = (off_m[:-1] * off_m[1:] < 0) & (np.hypot(step_m, gone_m) <= _STEP_M)
+    # at 30 degrees, or steeper
+    is_across &= 2 * np.abs(step_m) >= np.hypot(step_m, gone_m)
+    row = np.flatnonzero(is_across)
+    place_m = along_m[row] - off_m[row] / step_m[row] * gone_m[row]
+    is_free = (np.abs(counts.middles_m[:, None] - place_m) <= _CARRIER_M / 2).any(axis=1)
+    n_rows = counts.ends.shape[1]
+    if n_rows > 1:
+        high_m = float(np.median(rays.sensors_m[:, 2])) - rays.ground_z_m
+        n_rows = int(np.searchsorted(ROWS_M[1:], high_m, "right"))
+    ends = counts.ends.copy()
+    ends[is_free, :n_rows, 1, BEYOND] += 1.0
+    return SurfaceCounts(counts.first_m, ends)
 
 
 def _group_places(sensors_m: FloatArray) -> IntArray:

@@ -12,7 +12,7 @@ from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, Surface
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.tolerances import BEHIND_M
-from scanplan.types import BoolArray, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _DOOR_M = (0.5, 2.4)  # openings that leaves hang in, single and double ones
 _BEFORE_M = (0.25, 1.2)  # furniture stands so far before its wall
@@ -41,8 +41,10 @@ class Features:
         Share of the rays to what was seen of it that end a little farther than its face.
     n_inner : float
         At how many of its ends another surface comes forward, as in the corners of a room.
-    end_m : float
-        From the nearer of its ends to another surface.
+    n_outer : float
+        At how many another goes back alone, as at the corners of a cupboard.
+    joint_m : float
+        From the nearest end, its own or another surface's, to the other of the two.
     hinge_m : float
         By how much it fits no opening of another wall as its leaf: from one of its ends to the
         jamb, and from its length to the opening's width.
@@ -63,7 +65,8 @@ class Features:
     overlooked: float
     deep: float
     n_inner: float
-    end_m: float
+    n_outer: float
+    joint_m: float
     hinge_m: float
     before_m: float
     back_m: float
@@ -103,8 +106,9 @@ class Surroundings:
                 witnesses=seen.witnesses / max(float(usual), _SEEN),
                 overlooked=seen.overlooked,
                 deep=seen.deep,
-                n_inner=self._count_corners(number),
-                end_m=self._find_end_m(number),
+                n_inner=n_inner,
+                n_outer=n_outer,
+                joint_m=self._find_joint_m(number),
                 hinge_m=self._find_hinge_m(number),
                 before_m=self._find_before_m(number),
                 back_m=self._find_back_m(number),
@@ -112,11 +116,16 @@ class Surroundings:
                 through_glass=float(through_glass[number]),
             )
             for number, (wall, seen) in enumerate(zip(self.walls, witnesses, strict=True))
+            for n_inner, n_outer in [self._count_corners(number)]
         ]
 
     @cached_property
     def _lines(self) -> list[shapely.LineString]:
         return [shapely.LineString(wall.ends) for wall in self.walls]
+
+    @cached_property
+    def _ends(self) -> list[Array]:
+        return [np.asarray(shapely.points(wall.ends)) for wall in self.walls]
 
     @cached_property
     def _tree(self) -> shapely.STRtree:
@@ -148,23 +157,28 @@ class Surroundings:
         near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
         return [other for other in near.tolist() if other != number]
 
-    def _count_corners(self, number: int) -> float:
+    def _count_corners(self, number: int) -> tuple[float, float]:
+        """Return at how many ends other surfaces come forward, and at how many they go back."""
         wall = self.walls[number]
         reach_m = BEHIND_M + wall.half_m
-        n_inner = 0
+        n_inner = n_outer = 0
         for end_m in wall.ends:
             near = [self.walls[i] for i in self._near(number, shapely.Point(end_m), reach_m)]
             across = [o for o in near if abs(o.line.normal @ wall.line.normal) < _ACROSS]
-            n_inner += any(wall.line.offset_m(o.ends).max() > reach_m for o in across)
-        return float(n_inner)
+            off_m = np.array([wall.line.offset_m(o.ends) for o in across]).reshape(-1, 2)
+            comes_forward = off_m.max(axis=1) > reach_m
+            n_inner += bool(comes_forward.any())
+            n_outer += bool((~comes_forward & (off_m.min(axis=1) < -reach_m)).any())
+        return float(n_inner), float(n_outer)
 
-    def _find_end_m(self, number: int) -> float:
-        apart_m = [
-            max(float(self._lines[other].distance(end)) - self.walls[other].half_m, 0.0)
-            for end in map(shapely.Point, self.walls[number].ends)
-            for other in self._near(number, end, _APART_M)
-        ]
-        return min(apart_m, default=math.inf)
+    def _find_joint_m(self, number: int) -> float:
+        line, half_m = self._lines[number], self.walls[number].half_m
+        joint_m = math.inf
+        for other in self._near(number, line, _APART_M):
+            own_m = shapely.distance(self._lines[other], self._ends[number]).min()
+            its_m = shapely.distance(line, self._ends[other]).min()
+            joint_m = min(joint_m, own_m - self.walls[other].half_m, its_m - half_m)
+        return max(float(joint_m), 0.0)
 
     def _find_hinge_m(self, number: int) -> float:
         wall = self.walls[number]

@@ -31,7 +31,7 @@ class LabelledSurfaces:
 
 
 def label_surfaces(
-    walls: Sequence[PlanWall], rays: RaySet, *, max_opening_m: float
+    walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray, *, max_opening_m: float
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -40,16 +40,18 @@ def label_surfaces(
     walls : sequence of plan_wall.PlanWall
         Faces in pairs; what is open of them is found anew.
     rays : ray_set.RaySet
+    track_m : (k, 2) float64
+        Where the sensor was, one place after the other.
     max_opening_m : float
         What is open for longer parts a wall in two.
     """
     parts = [
         (part, top_m)
         for wall in walls
-        for part, top_m in wall_labels.label_wall(wall, rays, max_opening_m=max_opening_m)
+        for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = [int(things.weigh_things(features).argmax()) for features in found]
+    kinds = things.weigh_things(found).argmax(axis=1).tolist()
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],

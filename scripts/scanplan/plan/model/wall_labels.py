@@ -30,7 +30,7 @@ def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
 
 
 def label_wall(
-    wall: PlanWall, rays: RaySet, *, max_opening_m: float
+    wall: PlanWall, rays: RaySet, track_m: FloatArray, *, max_opening_m: float
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -39,10 +39,12 @@ def label_wall(
     wall : plan_wall.PlanWall
         Its openings are found anew.
     rays : ray_set.RaySet
+    track_m : (k, 2) float64
+        Where the sensor was, one place after the other.
     max_opening_m : float
         What is open for longer parts a wall in two.
     """
-    counts = count_wall(wall, rays)
+    counts = surface_counts.add_passages(count_wall(wall, rays), wall.line, rays, track_m)
     stretches = line_labels.label_line(counts, is_outer=not wall.right)
     stretches[-1] = replace(stretches[-1], high_m=wall.high_m)
     for run in _part_runs(stretches, max_opening_m):
