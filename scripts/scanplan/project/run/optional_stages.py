@@ -7,7 +7,8 @@ next run, which knows nothing of it, tries them again, and makes anew what lacke
 
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from pathlib import Path
 
 _LEFT_OUT = "SCANPLAN_LEFT_OUT"
 
@@ -42,10 +43,13 @@ def list_lacking(failed: Iterable[tuple[str, str]]) -> set[tuple[str, str]]:
     return lacking | {(dataset, other) for dataset, stage in lacking for other in NEEDED_BY[stage]}
 
 
-def begin_without(failed: Iterable[tuple[str, str]]) -> None:
+def begin_without(failed: Collection[tuple[str, str]]) -> None:
     """Begin the run anew, in the place of this process, without some stages; does not return."""
     words = sorted(f"{dataset}/{stage}" for dataset, stage in failed)
     os.environ[_LEFT_OUT] = " ".join(words)
+    for dataset, _ in failed:
+        # it tells of the fault; and a run that had nothing to do would end as if there were none
+        Path("results", dataset, "summary.txt").unlink(missing_ok=True)
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
     os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
