@@ -74,7 +74,7 @@ _VARIABLES = {
             ("MALLOC_ARENA_MAX", "nonsense"),
             ("MALLOC_PERTURB_", "170"),
             ("SHELL", "/bin/false"),
-            ("BASH_ENV", "/dev/full"),
+            ("BASH_ENV", "/dev/null"),
             ("CDPATH", "/"),
             ("IFS", "/"),
             ("POSIXLY_CORRECT", "1"),
