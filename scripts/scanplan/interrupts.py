@@ -36,6 +36,11 @@ def begin_work() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def end_work() -> None:
+    """Have Ctrl-C do nothing any more: all is made and told, and the process is about to end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def refuse_children() -> None:
     """Have stages that this process starts from now on end at once."""
     os.environ[_ENDING] = "1"

@@ -126,6 +126,9 @@ def try_interrupts(project, tally, n_times):
         said = run.communicate()[1].splitlines()
         is_told = [line for line in said if line.startswith("scanplan: ")] == [_INTERRUPTED]
         outcome = judging.CLEAR if is_told and run.returncode == 130 else judging.NO_LINE
+        if run.returncode == 0 and (project.folder / "results/d" / _TARGET).exists():
+            # it had nothing left to do but to end
+            outcome = judging.SOUND
         if "Traceback" in " ".join(said):
             outcome = judging.UNEXPECTED
         tally.add("Ctrl-C", f"{number}", outcome, " ".join(said))

@@ -3,6 +3,7 @@ import os
 from pathlib import Path
 
 from snakemake.settings.enums import Quietness
+from scanplan.interrupts import end_work
 from scanplan.project.run import (
     console,
     foreign_settings,
@@ -208,6 +209,7 @@ onsuccess:
     if optional_stages.read_left_out():
         tell_failure()
         raise SystemExit(1)
+    end_work()
     tell(f"took     {THIS_RUN.elapsed()}")
     if is_unheard():
         raise SystemExit(1)
