@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import shapely
 
-from scanplan.rays import levels
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import Array, FloatArray
 
+_DOWN, _DOWN_SHARE = 0.2, 0.01  # a slope of 11 degrees: of sensors that look down to 15 an eighth
 _LINTEL_M = 2.05  # DIN 18101: openings of 2.005 and 2.13 m; 2.03 and 2.13 where doors are in feet
 _LEAST_PLACES = 2  # one may be the arch of a hall
 _DOUBT_M = 0.2  # doors of old houses, and of some countries, differ by so much
@@ -40,10 +40,9 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
     Returns
     -------
     float
-        `rays.floor_z_m` where a floor was seen, too few doors were driven through, or both agree.
+        `rays.floor_z_m` where the sensor looks down, few doors were driven through, or both agree.
     """
-    seen_z_m, _ = levels.find_floor_and_ceiling(rays.xyz_m[:, 2])
-    if np.isfinite(seen_z_m) or len(track_m) < 2:
+    if _looks_down(rays) or len(track_m) < 2:
         return rays.floor_z_m
     found = np.array(list(_find_lintels(rays, segments, track_m))).reshape(-1, 3)
     place = np.unique(np.round(found[:, :2] / _PLACE_M), axis=0, return_inverse=True)[1].ravel()
@@ -52,6 +51,13 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
         return rays.floor_z_m
     floor_z_m = float(np.median(of_places)) - _LINTEL_M
     return rays.floor_z_m if abs(rays.floor_z_m - floor_z_m) <= _DOUBT_M else floor_z_m
+
+
+def _looks_down(rays: RaySet) -> bool:
+    """Return whether returns come from below: whoever looks down in a room sees its floor."""
+    way_m = rays.xyz_m - np.repeat(rays.sensors_m, np.diff(rays.first), axis=0)
+    is_below = way_m[:, 2] < -_DOWN * np.hypot(way_m[:, 0], way_m[:, 1])
+    return bool(is_below.sum() > _DOWN_SHARE * len(is_below))
 
 
 def _find_lintels(
