@@ -108,6 +108,7 @@ def register_scans(
                 survey, t_ns, verdicts, constraints, clouds.take(np.flatnonzero(is_kept)), odometry
             )
         _write_kept_scans(scans, survey, verdicts, kept, found.read_points(kept))
+    spoken = witnesses.tell("register_scans", measured)
     log.log_line(
         f"register_scans: {results.summarise_registration(verdicts, found.n_dropped)};"
         f" {results.summarise_constraints(constraints)}"
@@ -115,7 +116,6 @@ def register_scans(
     columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, t_ns, verdicts)
-    spoken = witnesses.tell("register_scans", measured)
     told = doubts.read_doubts(poses, schemas.POSES).add(found.damage, spoken)
     for sentence in told.sentences:
         log.log_warning(f"register_scans: {sentence}")

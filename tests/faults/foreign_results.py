@@ -82,6 +82,7 @@ def _list_clouds(folder):
         "sound": ({}, _POINTS, True),
         "sound, compressed": (compressed, of_bytes, True),
         "sound, in text": ({"DATA": "ascii"}, b"1 2 3\n" * 20, True),
+        "sound, with a long comment": ({"VERSION": f"0.7\n# {'ü' * 9000}"}, _POINTS, True),
         "bomb of 1.8 GB": (compressed | _points(150_000_000), _sizes(20, 1_800_000_000), False),
         "bomb of 4 GB, few points": (compressed, _sizes(20, 2**32 - 1), False),
         "packed 4 GB": (compressed, _sizes(2**32 - 1, 240), False),
@@ -98,12 +99,12 @@ def _list_clouds(folder):
         "points of minus a gigabyte": ({"COUNT": "1 1 -300000000"}, _POINTS, False),
         "sizes in words": ({"SIZE": "four 4 4"}, _POINTS, False),
         "too few sizes": ({"SIZE": "4 4"}, _POINTS, False),
-        "no points stated": ({"POINTS": None}, _POINTS, False),
+        "points by width and height": ({"POINTS": None}, _POINTS, True),
         "no data stated": ({"DATA": None}, _POINTS, False),
         "data of an unknown form": ({"DATA": "quantum"}, _POINTS, False),
         "no fields": ({"FIELDS": "", "SIZE": "", "TYPE": "", "COUNT": ""}, b"", False),
         "a header of a megabyte": ({"VERSION": "0" * 10**6}, _POINTS, False),
-        "a header in UTF-16": ({"VERSION": "0.7".encode("utf-16").decode("latin")}, _POINTS, False),
+        "a version in UTF-16": ({"VERSION": "0.7".encode("utf-16").decode("latin")}, _POINTS, True),
     }
     return [
         Case(

@@ -67,7 +67,10 @@ def test_recordings_that_have_changed_since_the_poses_were_made_are_refused(tmp_
     poses = write_dataset(tmp_path, HERE) / "poses.parquet"
     lineage.check_recordings(poses, HERE)
     lineage.check_recordings(poses, "")
-    with pytest.raises(StageError, match=r"poses.parquet: .* have changed since .*run the same"):
+    with pytest.raises(
+        StageError,
+        match=r"poses.parquet: .* have changed since .*delete .*poses.parquet and run the same",
+    ):
         lineage.check_recordings(poses, THERE)
 
 

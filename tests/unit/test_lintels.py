@@ -46,6 +46,12 @@ def test_few_doors_or_none_leave_it_as_it_is(track_m):
     assert lintels.settle_floor_z(rays, segments, track_m) == rays.floor_z_m
 
 
+def test_both_faces_of_an_arch_are_one_place():
+    """Wherever it stands."""
+    rays, segments = survey([2.4, 2.6], see_walls([2.4, 2.6]))
+    assert lintels.settle_floor_z(rays, segments, TRACK_M) == rays.floor_z_m
+
+
 def test_a_floor_that_was_seen_stays():
     x_m, y_m = np.meshgrid(np.arange(-1, 8, 0.05), np.arange(-2, 2, 0.05))
     floor = np.column_stack([x_m.ravel(), y_m.ravel(), np.full(x_m.size, 2.0)])

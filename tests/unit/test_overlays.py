@@ -11,7 +11,7 @@ from shapely import LineString, MultiPoint, MultiPolygon, Point, Polygon, box
 
 from helpers import floorplan_making, overlay_making
 from scanplan.exports.sheet import composition
-from scanplan.geometry import overlays
+from scanplan.geometry import overlay_steps, overlays
 from scanplan.geometry.fallbacks import take_fallbacks
 from scanplan.plan.rooms.room_outlines import find_rooms
 from scanplan.project import dataset_files
@@ -198,3 +198,16 @@ def test_rooms_with_curved_walls_are_found(recordings_dir):
     )
     assert sum(room.polygon.area for room in rooms) >= 0.9 * floor.area
     assert all(isinstance(room.polygon, Polygon | MultiPolygon) for room in rooms)
+
+
+def test_collections_are_divided_where_any_dimension_is_asked_for():
+    square, line = shapely.box(0, 0, 2, 2), shapely.LineString([(3, 0.5), (5, 0.5)])
+    both = shapely.geometrycollections([square, line])
+    found = overlays.intersect_shapes(both, shapely.box(1, 0, 4, 1))
+    assert found.area == pytest.approx(1) and found.length == pytest.approx(4 + 1)
+
+
+def test_what_areas_can_be_is_told_of_several_with_one():
+    squares = np.array([shapely.box(0, 0, 1, 1), shapely.box(5, 0, 7, 2)])
+    can_be = overlay_steps._can_be(shapely.union, (squares, shapely.box(0, 0, 2, 2)), [4.5, 3.0])
+    assert can_be.tolist() == [True, False]

@@ -183,13 +183,13 @@ def _is_doubtful(
 
 def _can_be(function: Overlay, shapes: Sequence[Shapes], area: Answer) -> Answer:
     """Return which areas are neither more nor less than valid shapes can have left."""
-    areas: list[Answer] = [shapely.area(of) for of in shapes]
+    areas: Sequence[Answer] = np.broadcast_arrays(*[shapely.area(of) for of in shapes])
     if function is shapely.intersection:
         least, most = 0.0, np.minimum(*areas)
     elif function is shapely.difference:
         least, most = areas[0] - areas[1], areas[0]
     else:
-        least, most = np.maximum.reduce(areas), sum(areas)
+        least, most = np.max(areas, axis=0), np.sum(areas, axis=0)
     off = _DOUBT_M2 + ROUNDING * most
     return (least - off <= area) & (area <= most + off)
 

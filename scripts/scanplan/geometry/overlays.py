@@ -171,14 +171,15 @@ def _intersect_carefully(
 ) -> BaseGeometry:
     """Return what two shapes have in common, each dimension of the one with each of the other's."""
     shape, other = shapes
-    if dimension == ANY:
-        return shapely.intersection(shape, other, grid_size=grid)
     common = [
         shapely.intersection(steps.parts_of(shape, one), steps.parts_of(other, of), grid_size=grid)
-        for one in (LINE, AREA)
-        for of in (LINE, AREA)
-        if min(one, of) == max(dimension, LINE)
+        for one in (POINT, LINE, AREA)
+        for of in (POINT, LINE, AREA)
+        if dimension == ANY or min(one, of) == max(dimension, LINE)
     ]
+    if dimension == ANY:
+        parts = [part for of_two in common for part in shapely.get_parts(of_two)]
+        return shapely.geometrycollections([part for part in parts if not part.is_empty])
     return shapely.union_all(
         [steps.keep_dimension(part, dimension) for part in common], grid_size=grid
     )

@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 import shapely
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import Array, FloatArray
@@ -21,7 +23,7 @@ _ABOVE_M, _BELOW_M = 0.2, 0.5  # the sensor: there a door is closed, and there i
 _LEAST_RETURNS = 4
 _OPEN_SHARE = 0.1  # of the returns above may lie below: edges, people
 _LOW_PERCENT = 5
-_PLACE_M = 1.0
+_PLACE_M = 1.0  # both faces of a wall are one, and every pass of a door
 _STEP_M = 1.5  # farther apart nobody knows where the sensor went
 
 
@@ -45,8 +47,9 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
     if _looks_down(rays) or len(track_m) < 2:
         return rays.floor_z_m
     found = np.array(list(_find_lintels(rays, segments, track_m))).reshape(-1, 3)
-    place = np.unique(np.round(found[:, :2] / _PLACE_M), axis=0, return_inverse=True)[1].ravel()
-    of_places = [float(np.median(found[place == of, 2])) for of in np.unique(place)]
+    is_near = np.linalg.norm(found[:, None, :2] - found[:, :2], axis=2) <= _PLACE_M
+    n_places, place = connected_components(csr_array(is_near), directed=False)
+    of_places = [float(np.median(found[place == of, 2])) for of in range(n_places)]
     if len(of_places) < _LEAST_PLACES:
         return rays.floor_z_m
     floor_z_m = float(np.median(of_places)) - _LINTEL_M

@@ -80,7 +80,7 @@ def log_to_file(path: FilePath) -> Iterator[None]:
 def _tell_fallbacks() -> None:
     """Say how many overlays of shapes GEOS could not do at first, where there were any."""
     if n_fallbacks := fallbacks.take_fallbacks():
-        _log.info("overlays done another way, for GEOS contradicted itself: %d", n_fallbacks)
+        _log.info("stage did %d overlays another way, for GEOS contradicted itself", n_fallbacks)
 
 
 @contextmanager

@@ -64,6 +64,7 @@ def check_recordings(poses: FilePath, made_of: str) -> None:
     stated = read_made_of(poses)
     if made_of and stated not in ("", made_of):
         raise StageError(
-            f"{poses}: was made of recordings that have changed since (digest {stated[:12]}, now"
-            f" {made_of[:12]}): run the same command again, once nothing writes to them"
+            f"{poses}: was made of other recordings, or they have changed since (digest"
+            f" {stated[:12]}, now {made_of[:12]}): once nothing writes to them, delete {poses} and"
+            " run the same command again"
         )

@@ -46,7 +46,8 @@ _MOST_LINES = 6  # of what Snakemake says: the kind of error, what is wrong, adv
 _MOST_LETTERS = 600  # nobody reads a longer line
 # the stage itself says what was wrong
 _ERRORS_OF_STAGES = ("CalledProcessError", "RuleException")
-_PROGRESS = re.compile(r" INFO [^:]+: ((?:\d+(?:/\d+)? [^:]*, [\d.]+ per s|takes long: ).*)$")
+_PROGRESS = re.compile(r" INFO [^:]+: (\d+(?:/\d+)? [^:]*, [\d.]+ per s.*)$")
+_LATE = re.compile(r" INFO [^:]+: (takes long: .*)$")
 _SAID = re.compile(r" (INFO|WARNING) (.*)$")
 
 
@@ -60,6 +61,7 @@ class _Stage:
     began_s: float
     told_s: float
     waits: bool = True
+    late: str = ""
 
     def is_at_work(self, now_s: float) -> bool:
         """Return whether it has opened its log: on a cluster it may wait for long."""
@@ -72,6 +74,14 @@ class _Stage:
         """Return how far it is, as far as its log says."""
         found = [match[1] for line in _last_lines(self) if (match := _PROGRESS.search(line))]
         return found[-1] if found else ""
+
+    def find_late(self) -> str:
+        """Return what it is at if it takes long and has said so anew; empty otherwise."""
+        found = [match[1] for line in _last_lines(self) if (match := _LATE.search(line))]
+        if not found or found[-1] == self.late:
+            return ""
+        self.late = found[-1]
+        return self.late
 
     def findings(self) -> tuple[str, list[str]]:
         """Return its last line, without its name, and its warnings."""
@@ -185,6 +195,9 @@ class RunConsole(logging.Handler):
     def _tell_progress(self) -> None:
         now_s = time.monotonic()
         stages = [stage for stage in self._stages.values() if stage.is_at_work(now_s)]
+        for stage in stages:
+            if late := stage.find_late():
+                self._terminal.say(self._line(stage, late))
         if self._terminal.in_place:
             self._terminal.show([self._running_line(stage, now_s) for stage in stages])
             return

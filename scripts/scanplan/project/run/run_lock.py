@@ -88,12 +88,18 @@ def lock_results(names: Iterable[str]) -> list[int]:
         If a run at work in another folder holds one.
     """
     held: list[int] = []
+    places: set[tuple[int, int]] = set()
     for folder in (Path("results", name) for name in names):
         try:
             folder.mkdir(parents=True, exist_ok=True)
             held.append(os.open(folder, os.O_RDONLY))
         except OSError as error:
             raise atomic.describe_unwritable(folder, error) from None
+        place = os.fstat(held[-1])
+        # two names of one folder are of this run
+        if (place.st_dev, place.st_ino) in places:
+            continue
+        places.add((place.st_dev, place.st_ino))
         try:
             fcntl.flock(held[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:

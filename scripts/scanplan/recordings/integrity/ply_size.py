@@ -17,8 +17,8 @@ _BYTES = {
 _END = b"end_header"
 
 
-def check_ply_size(path: Path) -> None:
-    """Refuse a .ply whose points do not all fit into the file.
+def check_ply_size(path: Path) -> int:
+    """Return how many points a .ply states; refuse one whose points are not all there.
 
     Raises
     ------
@@ -32,6 +32,7 @@ def check_ply_size(path: Path) -> None:
         lines = [line.split() for line in head.decode("ascii").splitlines()]
         form = next(words[1] for words in lines if words[:1] == ["format"])
         needed = _needed_size(lines, in_text=form == "ascii")
+        n_points = next(int(words[2]) for words in lines if words[:2] == ["element", "vertex"])
     except (ValueError, LookupError, StopIteration):
         raise StageError(f"{path}: damaged: its header cannot be read; write it again") from None
     types = {words[1] for words in lines if words[:1] == ["property"] and words[-1] in "xyz"}
@@ -48,6 +49,7 @@ def check_ply_size(path: Path) -> None:
         raise StageError(
             f"{path}: damaged: its points need {needed} {unit}, {there} are there; write it again"
         )
+    return n_points
 
 
 def _needed_size(header: list[list[str]], *, in_text: bool) -> int:
