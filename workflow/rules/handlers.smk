@@ -4,8 +4,10 @@ from pathlib import Path
 
 from snakemake.settings.enums import Quietness
 from scanplan.interrupts import end_work
+from snakemake.persistence import PersistenceBase
 from scanplan.project.run import (
     console,
+    failed_stages,
     foreign_settings,
     run_lock,
     run_outcome,
@@ -119,6 +121,7 @@ if workflow.is_main_process and not IS_MODULE:
     )
 if not IS_MODULE:
     shorten_traces(is_begun=True)
+    failed_stages.redo_failed(PersistenceBase)
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 

@@ -8,13 +8,13 @@ from scanplan.errors import MORE_MEMORY
 from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
 from scanplan.project.run import memory_kills, optional_stages
+from scanplan.project.run.failed_stages import STAGE_DONE
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
 from scanplan.stage import bytecode
 from scanplan.store import atomic
 
-_DONE = " stage done"
 _MADE_WITHOUT = "all that does not need it is made; the same command tries it again"
 _OUTSIDE = "was ended from outside"
 
@@ -76,7 +76,7 @@ def _read_failed(name: str, run: FolderRun) -> Iterator[tuple[Path, list[str]]]:
     for log in sorted(Path("logs", name).glob("*.log")):
         lines = log.read_text(errors="replace").splitlines()
         is_of_run = log.stem in failed or run.has_written(log)
-        if is_of_run and not (lines and lines[-1].endswith(_DONE)):
+        if is_of_run and not (lines and lines[-1].endswith(STAGE_DONE)):
             yield log, lines
 
 
