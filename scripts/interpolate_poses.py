@@ -11,6 +11,7 @@ from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import lidar_odometry, pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
 from scanplan.stage import log
+from scanplan.stage.witnesses import state_witness
 from scanplan.store import doubts, schemas, tables
 from scanplan.types import BoolArray, FilePath, IntArray
 
@@ -80,6 +81,11 @@ def interpolate_poses(
         chosen = candidates.choose_candidates(pose, is_steady=is_steady, **spacing)
         candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
         _log_unsteady(is_steady, chosen)
+    n_covered = int(covered[chosen].sum())
+    n_without = len(chosen) - n_covered
+    share = n_without / len(chosen)
+    lacking = state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
+    found = found.add(contradictions=[lacking.sentence] if lacking.is_beyond else [])
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
     notes = found.as_notes() | {
         pose_kind.NOTE: survey.pose_kind,
@@ -88,10 +94,9 @@ def interpolate_poses(
     tables.write_table(output, schemas.POSES, columns, notes=notes, made_of=made_of)
     for sentence in (*found.sentences, *gaps, *still):
         log.log_warning(f"interpolate_poses: {sentence}")
-    n_covered = int(covered[chosen].sum())
     log.log_line(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
-        f" {n_covered:,} with poses, {len(chosen) - n_covered:,} without"
+        f" {n_covered:,} with poses, {n_without:,} without"
     )
     _log_pose_kind(
         survey.pose_kind, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND

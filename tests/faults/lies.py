@@ -41,6 +41,14 @@ def put_aside(drive, aside_m=2.0, every=20, n=3):
     return replace(drive, map_from_base=poses)
 
 
+def repeat_clouds(drive, begin=0.4, share=0.1):
+    """A driver hangs for a while and sends its last cloud again and again."""
+    first = int(begin * len(drive.clouds))
+    hung = range(first, first + int(share * len(drive.clouds)))
+    clouds = [drive.clouds[first] if i in hung else cloud for i, cloud in enumerate(drive.clouds)]
+    return replace(drive, clouds=clouds)
+
+
 def drift_origin(drive, step_m=0.01):
     """The map's origin moves a little from scan to scan."""
     poses = drive.map_from_base.copy()
@@ -200,6 +208,10 @@ _OF_EACH = {
     "every 20th to 22nd scan 2 m aside, no odometry": lambda drive: hide_odometry(put_aside(drive)),
     "every 20th to 22nd scan 0.6 m aside": partial(put_aside, aside_m=0.6),
     "every 40th to 47th scan 1 m aside": partial(put_aside, aside_m=1.0, every=40, n=8),
+    "a tenth of the clouds one again": repeat_clouds,
+    "a tenth of the clouds one again, no odometry": lambda drive: hide_odometry(
+        repeat_clouds(drive)
+    ),
     "origin drifts by 1 cm a scan": drift_origin,
     "origin drifts by 1 cm a scan, no odometry": lambda drive: hide_odometry(drift_origin(drive)),
     "origin drifts by 0.5 cm a scan": partial(drift_origin, step_m=0.005),

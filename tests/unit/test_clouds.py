@@ -17,6 +17,17 @@ def test_range_and_finite_mask_goes_over_points_and_times():
     assert (scan.scan_id, scan.t_ns, scan.n_dropped, scan.xyz_m.dtype) == (3, T_NS, 5, np.float32)
 
 
+def test_scans_of_the_same_points_have_one_digest():
+    rng = np.random.default_rng(3)
+    one, other = rng.uniform(1, 5, (2, 100, 3))
+    read = [
+        clouds.keep_in_range(i, T_NS + i, xyz_m, None, min_range_m=0.1, max_range_m=20)
+        for i, xyz_m in enumerate([one, other, one.astype(np.float32), one + 1e-6])
+    ]
+    digests = [scan.digest for scan in read]
+    assert digests[0] == digests[2] and len(set(digests)) == 3
+
+
 def test_all_points_dropped():
     scan = clouds.keep_in_range(
         0, T_NS, np.full((4, 3), np.nan), None, min_range_m=0, max_range_m=9

@@ -53,6 +53,11 @@ def test_track_drops_what_is_no_pose():
     assert (found["not finite"], found["without unit quaternion"]) == (2, 2)
 
 
+def test_a_place_that_is_nowhere_on_earth_is_no_pose():
+    edge, found = frame_edges.make_track_edge("map", "base", [1, 2], [1, 2], rows(1e7, 1e308))
+    assert edge.t_ns.tolist() == [1] and found["not finite"] == 1
+
+
 def test_track_without_stamps_takes_receive_times():
     edge, found = frame_edges.make_track_edge("map", "base", [0, 0], [7, 9], rows(1, 2))
     assert edge.t_ns.tolist() == [7, 9]

@@ -1,5 +1,6 @@
 """Points of one scan, whatever they were read from: range limits, sweep times, planarity."""
 
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
@@ -31,6 +32,8 @@ class Scan:
         or states times that are not those of a sweep.
     n_dropped : int
         Points that were not finite or out of range.
+    digest : int
+        Of the points as they were recorded: that of another scan says that they are the same.
     """
 
     scan_id: int
@@ -38,6 +41,7 @@ class Scan:
     xyz_m: FloatArray
     time_s: FloatArray | None
     n_dropped: int
+    digest: int = 0
 
 
 def is_in_range(xyz_m: FloatArray, *, min_range_m: float, max_range_m: float) -> BoolArray:
@@ -82,7 +86,8 @@ def keep_in_range(
         time_s = time_s if point_times.is_one_sweep(time_s) else None
     # by number and not by mask: a third of the time
     xyz_kept_m = np.asarray(xyz_m).take(rows, axis=0).astype(np.float32, copy=False)
-    return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(rows))
+    digest = zlib.crc32(np.ascontiguousarray(xyz_kept_m).data)
+    return Scan(int(scan_id), int(t_ns), xyz_kept_m, time_s, len(xyz_m) - len(rows), digest)
 
 
 def is_sweep_plane(xyz_m: FloatArray) -> bool:

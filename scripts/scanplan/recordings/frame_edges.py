@@ -14,6 +14,7 @@ from scanplan.geometry.tolerances import SAME_M
 from scanplan.recordings import clocks, pose_jumps
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+_FARTHEST_M = 1e8  # from the origin of any map, that of the Earth among them
 AMBIGUOUS = "in a time that went by twice (dropped)"
 _NORM_TOLERANCE = 1e-3  # single precision and a few digits of text stay within it
 
@@ -99,16 +100,16 @@ def make_track_edge(
     edge : FrameEdge or None
         None if nothing is left. Of poses with the same stamp the one recorded last is kept.
     faults : dict of str to int
-        How many were not finite, had no unit quaternion, came backwards in time, lay in a time that
-        went by twice (none of them is kept: nobody knows which of the two a scan belongs to),
-        repeated a stamp, had no stamp.
+        How many were not finite or nowhere on Earth, had no unit quaternion, came backwards in
+        time, lay in a time that went by twice (none of them is kept: nobody knows which of the
+        two a scan belongs to), repeated a stamp, had no stamp.
     """
     t_ns = np.asarray(t_ns, np.int64)
     rows = np.asarray(rows, float).reshape(-1, 7)
     unstamped = len(t_ns) > 0 and not t_ns.any()
     if unstamped:
         t_ns = np.asarray(receive_ns, np.int64)
-    finite = np.isfinite(rows).all(axis=1)
+    finite = np.isfinite(rows).all(axis=1) & (np.abs(rows[:, :3]) <= _FARTHEST_M).all(axis=1)
     unit = _have_unit_quaternions(rows)
     good = finite & unit
     twice = np.zeros(len(t_ns), bool)

@@ -72,6 +72,13 @@ def measure_misfit(
     return found.add(cause=find_cause() or f"{_USUAL_CAUSES}{carried}")
 
 
+def measure_repeats(n_repeated: int, n_asked: int) -> Measured:
+    """Return how many candidates have the points of an earlier one."""
+    return state_witness(
+        "repeats", n_repeated / max(n_asked, 1), n_repeated=n_repeated, n_asked=n_asked
+    )
+
+
 def measure_map(
     survey: CandidateScans,
     t_ns: IntArray,

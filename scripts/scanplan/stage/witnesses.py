@@ -112,6 +112,22 @@ WITNESSES = {
         "all recorded poses are the same, and {value} scans do not fit one another there",
         "the sensor moved, and its poses (input.pose_topic) do not say so",
     ),
+    # a localiser that begins late or ends early; recordings that overlap lose nine tenths
+    "no pose": Witness(
+        0.5,
+        _SHARE,
+        "{value} of the scans to register have no pose ({n_without:,} of {n_asked:,})",
+        "recordings may overlap in time, whose poses are dropped there, or the localiser was not at"
+        " work; set their clocks, or make each recording a dataset of its own",
+    ),
+    # candidates, between which the sensor has moved: noise alone makes them differ
+    "repeats": Witness(
+        0.01,
+        _SHARE,
+        "{value} of the scans ({n_repeated:,} of {n_asked:,}) are an earlier one again, bit by bit",
+        "a driver or a relay sent its last cloud again and again, and nobody knows what was seen"
+        " meanwhile; cut the recording there, or record it anew",
+    ),
     "map jump": Witness(
         0.2,
         _METRES,

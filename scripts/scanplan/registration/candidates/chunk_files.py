@@ -22,7 +22,7 @@ from scanplan.store import schemas, tables
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray, Settings
 
-_DROPPED = "n_dropped"
+_DROPPED, _REPEATED = "n_dropped", "n_repeated"
 _FAULTS = "faults"
 
 
@@ -47,6 +47,7 @@ def write_chunk(files: ChunkFiles, found: RegisteredCandidates, thinned: ScanCac
         The thinned points of its kept candidates.
     """
     notes = {_DROPPED: json.dumps(found.n_dropped), _FAULTS: json.dumps(found.faults)}
+    notes[_REPEATED] = json.dumps(found.n_repeated)
     columns = _candidate_columns(found.survey.scan_ids, found.results)
     tables.write_table(
         files.candidates, schemas.CHUNK_CANDIDATES, columns, allow_empty=True, notes=notes
@@ -86,7 +87,7 @@ def read_chunks(
     scan_results: list[ScanResult] = []
     edges: list[PoseConstraint] = []
     ids_of_chunk: list[IntArray] = []
-    n_dropped = 0
+    n_dropped = n_repeated = 0
     for files in chunks:
         columns = tables.read_table(files.candidates, schemas.CHUNK_CANDIDATES, allow_empty=True)
         notes = tables.read_notes(files.candidates, schemas.CHUNK_CANDIDATES)
@@ -94,6 +95,7 @@ def read_chunks(
         scan_results += _read_results(columns)
         edges += _read_constraints(files.constraints)
         n_dropped += json.loads(notes[_DROPPED])
+        n_repeated += json.loads(notes.get(_REPEATED, "0"))
         for fault in json.loads(notes[_FAULTS]):
             damaged.leave_out(fault)
         for _, xyz_m in _open_points(files.thinned).scans():
@@ -113,6 +115,7 @@ def read_chunks(
         edges=edges,
         read_points=read_points,
         n_dropped=n_dropped,
+        n_repeated=n_repeated,
         faults=damaged.faults,
         damage=damaged.describe(),
     )

@@ -41,6 +41,8 @@ class RegisteredCandidates:
         `read_points(rows)` iterates over the points (n, 3) float32, sensor frame, of kept ones.
     n_dropped : int
         Points that were not finite or out of range.
+    n_repeated : int
+        Candidates whose points were those of an earlier one, as they were recorded.
     faults : list of str
         What is wrong with each candidate that could not be decoded.
     damage : list of str
@@ -52,6 +54,7 @@ class RegisteredCandidates:
     edges: list[PoseConstraint]
     read_points: Callable[[IntArray], Iterable[FloatArray]]
     n_dropped: int
+    n_repeated: int
     faults: list[str]
     damage: list[str]
 
@@ -171,22 +174,33 @@ def register_recorded(
         edges=edges,
         read_points=lambda rows: raw.part(rows + (begin - first)),
         n_dropped=counted.n_dropped,
+        n_repeated=counted.n_repeated,
         faults=damaged.faults,
         damage=damage,
     )
 
 
 class _CountedScans:
-    """Scans to iterate over once, and how many points were dropped so far from some scan on."""
+    """Scans to iterate over once, and what was counted so far from some scan on.
+
+    Attributes
+    ----------
+    n_dropped, n_repeated : int
+        As in `RegisteredCandidates`.
+    """
 
     def __init__(self, scans: Iterable[Scan], begin: int) -> None:
         self._scans = scans
         self._begin = begin
-        self.n_dropped = 0
+        self.n_dropped = self.n_repeated = 0
 
     def __iter__(self) -> Iterator[Scan]:
+        known: set[int] = set()
         for scan in self._scans:
-            self.n_dropped += scan.n_dropped if scan.scan_id >= self._begin else 0
+            if scan.scan_id >= self._begin:
+                self.n_dropped += scan.n_dropped
+                self.n_repeated += len(scan.xyz_m) > 0 and scan.digest in known
+            known.add(scan.digest)
             yield scan
 
 
