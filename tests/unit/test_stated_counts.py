@@ -109,6 +109,26 @@ def test_messages_that_a_ros1_index_lacks_are_missed(tmp_path):
         count_messages(path)
 
 
+def test_a_bag_behind_another_is_told(tmp_path):
+    path = written(tmp_path, "ros1")
+    content = path.read_bytes()
+    with bags.open_bag(path) as bag:
+        assert bag.describe_loss() == ""
+    path.write_bytes(2 * content)
+    with bags.open_bag(path) as bag:
+        assert f"{len(content):,} bytes behind" in bag.describe_loss()
+        assert "a file of its own" in bag.describe_loss()
+    assert count_messages(path) == TOPICS
+
+
+def test_a_file_of_nothing_is_refused_whatever_its_size(tmp_path):
+    path = tmp_path / "x.bag"
+    with path.open("wb") as file:
+        file.truncate(2**40)
+    with pytest.raises(StageError, match=r"x.bag: .*overwritten"), bags.open_bag(path):
+        pass
+
+
 def test_the_remedy_of_an_mcap_in_a_folder_is_that_of_an_mcap(tmp_path):
     path = written(tmp_path, "mcap")
     storage = next(path.glob("*.mcap"))

@@ -32,6 +32,7 @@ RawMessage = bytes | StoredMessage
 BagMessage = tuple[Connection, int, RawMessage]
 """A message's connection, its time of receipt in nanoseconds, and its content, not decoded."""
 
+_FIRST_LINE_BYTES = 64
 SoundReader = rosbag1.Reader | rosbag2.Reader
 """What reads a recording that has to be whole."""
 
@@ -79,7 +80,13 @@ def _choose_reader(path: Path, is_ros2: bool, stack: ExitStack) -> SoundReader:
     place = _openable_name(path, stack)
     if path.is_dir():
         unpacking.check_room(path)
-    return rosbag2.Reader(place) if is_ros2 else rosbag1.Reader(place)
+    if is_ros2:
+        return rosbag2.Reader(place)
+    with path.open("rb") as file:
+        # rosbags looks for the end of the first line, however far off
+        if b"\n" not in file.read(_FIRST_LINE_BYTES):
+            raise ValueError("does not begin as a ROS 1 bag does")
+    return rosbag1.Reader(place)
 
 
 class Bag:
@@ -108,9 +115,11 @@ class Bag:
         self._typestore_of: dict[int, tuple[Connection, Typestore]] = {}
         self._unpack: Callable[[bytes], bytes] | None = None
         self._stated: Mapping[str, int] = {}
+        self._n_behind = 0
         if not isinstance(reader, SalvagedReader):
             self._unpack = unpacking.limit_unpacking(reader)
             stated_counts.check_checksums(reader)
+            self._n_behind = stated_counts.count_bytes_behind(reader)
             self._stated = stated_counts.count_stated_messages(reader)
 
     def messages(self, names: Collection[str], *, n_unread: int = 0) -> Iterator[BagMessage]:
@@ -149,12 +158,19 @@ class Bag:
             raise StageError(f"{self.path}: {fault}; {_remedy_of_storage(self.path)}")
 
     def describe_loss(self) -> str:
-        """Return what of a salvaged recording is lost; nothing where it is whole or not salvaged.
+        """Return what of a salvaged recording is lost, or lies behind the end of another.
 
         Messages that are none of their type count once they were iterated over.
         """
         reader = self._reader
-        return reader.describe_loss() if isinstance(reader, SalvagedReader) else ""
+        if isinstance(reader, SalvagedReader):
+            return reader.describe_loss()
+        if self._n_behind <= 0:
+            return ""
+        return (
+            f"{self.path}: {self._n_behind:,} bytes behind the index of this bag are not read; if"
+            " they are another bag make each a file of its own, else write it again"
+        )
 
     def header(self, connection: Connection, raw: RawMessage) -> tuple[int, str]:
         """Return the header stamp and the frame of a message without decoding the rest."""

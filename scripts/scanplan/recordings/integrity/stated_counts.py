@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from rosbags import rosbag1, rosbag2
 from rosbags.interfaces import Connection
+from rosbags.rosbag1.reader import Header, RecordType
 from rosbags.rosbag2.reader import DirectoryReader
 from rosbags.rosbag2.storage_mcap import McapReader
 
@@ -41,6 +42,21 @@ def count_stated_messages(reader: Reader) -> Counter[str]:
             raise ValueError(f"{total} messages are stated, {listed.total()} of its topics")
         in_files += listed
     return stated | in_files
+
+
+def count_bytes_behind(reader: Reader) -> int:
+    """Return how many bytes of a ROS 1 bag are behind its index, where nobody looks for any."""
+    if not isinstance(reader, rosbag1.Reader) or reader.bio is None or not reader.chunk_infos:
+        return 0
+    reader.bio.seek(0)
+    reader.bio.readline()
+    index_begin = Header.read(reader.bio, RecordType.BAGHEADER).get_uint64("index_pos")
+    reader.bio.seek(index_begin)
+    for _ in reader.connections:
+        reader.read_connection()
+    for _ in reader.chunk_infos:
+        reader.read_chunk_info()
+    return reader.path.stat().st_size - reader.bio.tell()
 
 
 def check_checksums(reader: Reader) -> None:
