@@ -31,7 +31,7 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     Raises
     ------
     StageError
-        If a line does not hold eight numbers.
+        If a line does not hold eight numbers, or its stamp is no time.
     """
     stamps = []
     rows = []
@@ -42,16 +42,22 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
         if not values:
             continue
         try:
+            if "_" in line.split("#")[0]:
+                raise ValueError("Python reads 2_0 as 20")
             stamps.append(int(Decimal(values[0]) * 10**9))
             rows.append([float(value) for value in values[1:]])
         except (ValueError, ArithmeticError):
             raise StageError(
                 f"{path}: line {number} is not `t tx ty tz qx qy qz qw`; mend it"
             ) from None
-        if len(values) != 8 or abs(stamps[-1]) >= END_NS:
+        if len(values) != 8:
             raise StageError(
-                f"{path}: line {number} has {len(values)} numbers instead of 8, or no stamp;"
-                " mend it"
+                f"{path}: line {number} has {len(values)} numbers instead of 8; mend it"
+            )
+        if abs(stamps[-1]) >= END_NS:
+            raise StageError(
+                f"{path}: line {number} has a stamp of {values[0]} s, after the year 2262; give"
+                " seconds, not milliseconds or nanoseconds"
             )
     return np.array(stamps, np.int64), np.array(rows).reshape(-1, 7)
 
