@@ -72,7 +72,7 @@ style: environment
 	@$(BIN)/snakefmt --check Snakefile workflow/Snakefile workflow/rules
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
 
-faults: environment ## damaged and hostile input of every kind, and how each ends; an hour and three quarters
+faults: environment ## damaged and hostile input of every kind, and how each ends; an hour
 	@PYTHONPATH=scripts:tests $(BIN)/python -m faults.run_faults $(ARGS)
 
 audit: environment ## licences of all packages; fails on ones that do not fit the project's

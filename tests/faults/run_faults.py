@@ -1,6 +1,6 @@
 """Try faults of every group, and say how many of each ended how; not zero where one went wrong.
 
-make faults                          all, an hour and three quarters
+make faults                          all, an hour
 make faults ARGS=--quick             a few of each, as `make test` has them
 make faults ARGS="--kills 0"         without runs of the workflow, 25 minutes
 make faults ARGS="--only streams disk"     some of the runs: see `RUNS`
