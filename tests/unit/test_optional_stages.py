@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from helpers import report_making
+from scanplan.errors import StageError
 from scanplan.plan import floorplan_files
 from scanplan.project.run import optional_stages
 from scanplan.validation.doubts import list_doubts, list_unrated
@@ -52,3 +53,15 @@ def test_a_plan_that_could_not_be_rated_is_all_to_be_verified(files):
     assert sum(doubt.kind == "wall" for doubt in list_doubts(plan)) == n_walls > 0
     assert {doubt.reason for doubt in list_doubts(plan)} == {floorplan_files.UNRATED}
     assert "all are to be verified" in list_unrated(plan)[0]
+
+
+def test_stages_that_have_not_failed_are_not_left_out(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SCANPLAN_LEFT_OUT", "d/plan_next_visit x/y")
+    (tmp_path / "logs/d").mkdir(parents=True)
+    log = tmp_path / "logs/d/plan_next_visit.log"
+    log.write_text("INFO stage failed\n")
+    optional_stages.check_left_out()
+    log.write_text("INFO stage done\n")
+    with pytest.raises(StageError, match=r"SCANPLAN_LEFT_OUT: .*d/plan_next_visit.* unset it"):
+        optional_stages.check_left_out()

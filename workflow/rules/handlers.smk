@@ -110,6 +110,7 @@ def sources_of_given():
 
 # before the jobs are worked out: while another run is at work, files come and go
 if workflow.is_main_process and not IS_MODULE:
+    or_end(optional_stages.check_left_out)
     or_end(run_places.check_places, GIVEN)
     or_end(run_places.check_dates, GIVEN, sources_of_given())
     or_end(foreign_settings.check_foreign_settings, os.environ)

@@ -10,6 +10,9 @@ import sys
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from scanplan.errors import StageError
+from scanplan.project.run import failed_stages
+
 _LEFT_OUT = "SCANPLAN_LEFT_OUT"
 
 NEEDED_BY: dict[str, tuple[str, ...]] = {
@@ -36,6 +39,21 @@ def read_left_out() -> frozenset[tuple[str, str]]:
     words = (word.partition("/") for word in os.environ.get(_LEFT_OUT, "").split())
     # whoever sets it by hand may mean anything
     return frozenset((dataset, stage) for dataset, _, stage in words if stage in NEEDED_BY)
+
+
+def check_left_out() -> None:
+    """Refuse a note of failed stages that no run has left in its own environment.
+
+    Raises
+    ------
+    StageError
+    """
+    for dataset, stage in read_left_out():
+        if not failed_stages.has_failed([f"logs/{dataset}/{stage}.log"]):
+            raise StageError(
+                f"{_LEFT_OUT}: names {dataset}/{stage}, which has not failed; only a run sets this"
+                " variable: unset it"
+            )
 
 
 def list_lacking(failed: Iterable[tuple[str, str]]) -> set[tuple[str, str]]:
