@@ -65,3 +65,6 @@ def test_stages_that_have_not_failed_are_not_left_out(monkeypatch, tmp_path):
     log.write_text("INFO stage done\n")
     with pytest.raises(StageError, match=r"SCANPLAN_LEFT_OUT: .*d/plan_next_visit.* unset it"):
         optional_stages.check_left_out()
+    log.unlink()
+    with pytest.raises(StageError, match="unset it"):
+        optional_stages.check_left_out()

@@ -49,7 +49,8 @@ def check_left_out() -> None:
     StageError
     """
     for dataset, stage in read_left_out():
-        if not failed_stages.has_failed([f"logs/{dataset}/{stage}.log"]):
+        log = Path("logs", dataset, f"{stage}.log")
+        if not (log.is_file() and failed_stages.has_failed([str(log)])):
             raise StageError(
                 f"{_LEFT_OUT}: names {dataset}/{stage}, which has not failed; only a run sets this"
                 " variable: unset it"
