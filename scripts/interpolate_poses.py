@@ -10,8 +10,7 @@ from scanplan.project import provenance
 from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.motion import lidar_odometry, pose_kind, time_check, trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.stage import log
-from scanplan.stage.witnesses import state_witness
+from scanplan.stage import log, witnesses
 from scanplan.store import doubts, schemas, tables
 from scanplan.types import BoolArray, FilePath, IntArray
 
@@ -84,8 +83,8 @@ def interpolate_poses(
     n_covered = int(covered[chosen].sum())
     n_without = len(chosen) - n_covered
     share = n_without / len(chosen)
-    lacking = state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
-    found = found.add(contradictions=[lacking.sentence] if lacking.is_beyond else [])
+    lacking = witnesses.state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
+    found = found.add(contradictions=witnesses.tell("interpolate_poses", [lacking]))
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
     notes = found.as_notes() | {
         pose_kind.NOTE: survey.pose_kind,

@@ -7,10 +7,11 @@ everywhere.
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-import shapely
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from scanplan.geometry.lines import Line
+from scanplan.geometry.passages import find_passages
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import Array, FloatArray
 
@@ -24,7 +25,6 @@ _LEAST_RETURNS = 4
 _OPEN_SHARE = 0.1  # of the returns above may lie below: edges, people
 _LOW_PERCENT = 5
 _PLACE_M = 1.0  # both faces of a wall are one, and every pass of a door
-_STEP_M = 1.5  # farther apart nobody knows where the sensor went
 
 
 def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatArray) -> float:
@@ -70,34 +70,29 @@ def _find_lintels(
     begin_m, end_m = (
         np.column_stack([segments[f"x{end}_m"], segments[f"y{end}_m"]]) for end in (0, 1)
     )
-    way = (end_m - begin_m) / np.linalg.norm(end_m - begin_m, axis=1, keepdims=True)
     scan = np.searchsorted(rays.scan_ids, segments["scan_id"])
-    for row, place_m in _cross(np.stack([begin_m, end_m], axis=1), track_m):
+    for row, line, place_m in _cross(begin_m, end_m, track_m):
         of = scan[row]
         xyz_m = rays.xyz_m[rays.first[of] : rays.first[of + 1]]
-        away_m = xyz_m[:, :2] - place_m
-        is_near = np.abs(away_m @ (-way[row, 1], way[row, 0])) <= _AT_M
-        is_near &= np.abs(away_m @ way[row]) <= _BESIDE_M
+        is_near = np.abs(line.offset_m(xyz_m[:, :2])) <= _AT_M
+        is_near &= np.abs(line.along_m(xyz_m[:, :2]) - place_m) <= _BESIDE_M
         z_m = xyz_m[is_near, 2] - rays.sensors_m[of, 2]
         above_m = z_m[z_m > _ABOVE_M]
         n_below = int(((z_m <= _ABOVE_M) & (z_m > -_BELOW_M)).sum())
         if len(above_m) >= _LEAST_RETURNS and n_below <= _OPEN_SHARE * len(above_m):
             lintel_m = float(np.percentile(above_m, _LOW_PERCENT))
-            yield *place_m.tolist(), float(rays.sensors_m[of, 2]) + lintel_m
+            yield *line.at(place_m).tolist(), float(rays.sensors_m[of, 2]) + lintel_m
 
 
-def _cross(ends_m: FloatArray, track_m: FloatArray) -> Iterator[tuple[int, FloatArray]]:
-    """Yield the row of each segment (n, 2, 2) that a track crosses steeply, and where."""
-    steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)
-    steps_m = steps_m[np.linalg.norm(steps_m[:, 1] - steps_m[:, 0], axis=1) <= _STEP_M]
-    tree = shapely.STRtree(np.asarray(shapely.linestrings(steps_m)))
-    rows, steps = tree.query(np.asarray(shapely.linestrings(ends_m)), predicate="intersects")
-    for row, step in zip(rows.tolist(), steps.tolist(), strict=True):
-        (begin_m, end_m), (from_m, to_m) = ends_m[row], steps_m[step]
-        way, gone_m = end_m - begin_m, to_m - from_m
-        across = way[0] * gone_m[1] - way[1] * gone_m[0]
-        # at 30 degrees, or steeper
-        if abs(across) >= np.linalg.norm(way) * np.linalg.norm(gone_m) / 2 > 0:
-            away_m = begin_m - from_m
-            share = (way[0] * away_m[1] - way[1] * away_m[0]) / across
-            yield row, from_m + share * gone_m
+def _cross(
+    begin_m: FloatArray, end_m: FloatArray, track_m: FloatArray
+) -> Iterator[tuple[int, Line, float]]:
+    """Yield the row of each segment (n, 2) that a way crosses, its line, and where along that."""
+    way_m = end_m - begin_m
+    length_m = np.linalg.norm(way_m, axis=1)
+    normal = np.column_stack([-way_m[:, 1], way_m[:, 0]]) / length_m[:, None]
+    for row, (centre, across) in enumerate(zip(begin_m, normal, strict=True)):
+        line = Line(centre, across)
+        place_m = find_passages(line, track_m)
+        for along_m in place_m[(place_m >= 0) & (place_m <= length_m[row])].tolist():
+            yield row, line, along_m

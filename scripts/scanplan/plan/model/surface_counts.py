@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.lines import Line
+from scanplan.geometry.passages import find_passages
 from scanplan.rays import expected_returns
 from scanplan.rays.face_rays import FaceRays, cast_at_face
 from scanplan.rays.lost_rays import find_lost
@@ -29,7 +30,6 @@ N_ENDS = 5
 _SHALLOW_M = 0.12  # leaves of doors hang no deeper, panes and the far sides of reveals do
 _SQUARE = np.tan(np.radians(10))  # a pane answers no farther from square: beams of 3 mrad on glass
 _CARRIER_M = 0.4  # width of the slimmest robots and people that carry a sensor
-_STEP_M = 1.5  # between two places farther apart the way is not known
 _PLACE_M = 0.5  # scans no farther apart are one place: what they see differs by less than a door
 
 
@@ -137,13 +137,7 @@ def add_passages(
     track_m : (k, 2) float64
         Where it was, one place after the other.
     """
-    along_m, off_m = wall.along_m(track_m), wall.offset_m(track_m)
-    step_m, gone_m = np.diff(off_m), np.diff(along_m)
-    is_across = (off_m[:-1] * off_m[1:] < 0) & (np.hypot(step_m, gone_m) <= _STEP_M)
-    # at 30 degrees, or steeper
-    is_across &= 2 * np.abs(step_m) >= np.hypot(step_m, gone_m)
-    row = np.flatnonzero(is_across)
-    place_m = along_m[row] - off_m[row] / step_m[row] * gone_m[row]
+    place_m = find_passages(wall, track_m)
     is_free = (np.abs(counts.middles_m[:, None] - place_m) <= _CARRIER_M / 2).any(axis=1)
     n_rows = counts.ends.shape[1]
     if n_rows > 1:

@@ -9,8 +9,7 @@ from collections.abc import Awaitable, Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-STAGE_DONE = " stage done"
-"""What the log of a stage that did not fail ends with."""
+_STAGE_DONE = " stage done"
 
 
 def redo_failed(persistence: Any) -> None:
@@ -30,11 +29,12 @@ def has_failed(logs: Iterable[str]) -> bool:
     A log is removed when its stage is about to begin.
     """
     files = [Path(log) for log in logs]
-    return any(file.parent.is_dir() and not _ends_well(file) for file in files)
+    return any(file.parent.is_dir() and not ends_well(file) for file in files)
 
 
-def _ends_well(log: Path) -> bool:
-    return log.is_file() and log.read_text(errors="replace").rstrip().endswith(STAGE_DONE)
+def ends_well(log: Path) -> bool:
+    """Return whether a log is there, and is of a stage that did not fail."""
+    return log.is_file() and log.read_text(errors="replace").rstrip().endswith(_STAGE_DONE)
 
 
 def _with_failed(

@@ -7,8 +7,7 @@ from pathlib import Path
 from scanplan.errors import MORE_MEMORY
 from scanplan.interrupts import INTERRUPTED
 from scanplan.project import provenance
-from scanplan.project.run import memory_kills, optional_stages
-from scanplan.project.run.failed_stages import STAGE_DONE
+from scanplan.project.run import failed_stages, memory_kills, optional_stages
 from scanplan.project.run.run_lock import FolderRun
 from scanplan.project.run.slurm_jobs import LOGS as JOB_LOGS
 from scanplan.project.settings import Layer, locate_fault
@@ -74,10 +73,9 @@ def _read_failed(name: str, run: FolderRun) -> Iterator[tuple[Path, list[str]]]:
     """Iterate over the logs, and their lines, of a dataset's stages that failed in this run."""
     failed = {stage for dataset, stage in optional_stages.read_left_out() if dataset == name}
     for log in sorted(Path("logs", name).glob("*.log")):
-        lines = log.read_text(errors="replace").splitlines()
         is_of_run = log.stem in failed or run.has_written(log)
-        if is_of_run and not (lines and lines[-1].endswith(STAGE_DONE)):
-            yield log, lines
+        if is_of_run and not failed_stages.ends_well(log):
+            yield log, log.read_text(errors="replace").splitlines()
 
 
 def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[str]:
