@@ -1,5 +1,7 @@
 """Leaves of doors where geometry says, by hand: a wall of 0.2 m along x, a door of 1 m in it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -138,3 +140,15 @@ def test_a_shut_leaf_blocks_the_door_and_an_open_one_leaves_it_free():
     for open_deg, room_m in ((0, 0.0), (90, 2.0 - 1.545)):
         blocked = drawn_floor.floor_obstacles(floor(open_deg=open_deg), 0.4)
         assert blocked.distance(doorway) == pytest.approx(room_m)
+
+
+@pytest.mark.parametrize("turned_deg", range(0, 180, 5))
+def test_a_frame_leaves_the_way_clear_however_its_wall_is_turned(turned_deg):
+    turn_rad = np.radians(turned_deg)
+    along = np.array([np.cos(turn_rad), np.sin(turn_rad)])
+    start_m, end_m = (7.3, 10.1) + np.array([[0.5], [1.4]]) * along
+    line_m = shapely.LineString([start_m, end_m])
+    opening = replace(floor().openings[0], line_m=line_m, frame_m=0.03)
+    _, _, jambs = leaves.frame_bands(opening)[0]
+    assert [part.length for part in jambs.geoms] == pytest.approx([0.46, 0.46])
+    assert jambs.area == pytest.approx(2 * 0.03 * 0.2)

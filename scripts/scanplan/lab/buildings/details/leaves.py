@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely import LineString, Polygon
+from shapely import LineString, MultiLineString, Polygon
 from shapely.geometry.base import BaseGeometry
+from shapely.ops import substring
 
 from scanplan.geometry import overlays
 from scanplan.lab.buildings.details.things import DrawnLeaf, DrawnOpening
@@ -56,8 +57,10 @@ def frame_bands(opening: DrawnOpening) -> list[tuple[float, float, BaseGeometry]
         return []
     half_m = opening.thickness_m / 2
     whole = overlays.buffer_shapes(opening.line_m, half_m, cap_style="flat")
-    clear = overlays.buffer_shapes(opening.clear_line_m, half_m, cap_style="flat")
-    jambs = overlays.subtract_areas(whole, clear)
+    # what is clear, taken from the whole, would leave slivers along the edges that both share
+    line_m, frame_m = opening.line_m, opening.frame_m
+    ends_m = [substring(line_m, 0.0, frame_m), substring(line_m, line_m.length - frame_m, np.inf)]
+    jambs = overlays.buffer_shapes(MultiLineString(ends_m), half_m, cap_style="flat")
     return [
         (opening.sill_m, opening.clear_lintel_m, jambs),
         (opening.clear_lintel_m, opening.lintel_m, whole),
