@@ -18,8 +18,8 @@ def list_ways(cuts, likely, labels, priors):
     """Yield the log weight of each way that is possible, and its stretches (begin, end, kind).
 
     `labels` is a list of (kind, log prior), `priors` has the logarithms of what a line begins and
-    ends with, `ends[kind]`, of what follows what, `change[kind][next kind]`, and of lengths,
-    `length[kind][columns - 1]`.
+    ends with, `begins[kind]` and `ends[kind]`, of what follows what, `change[kind][next kind]`, and
+    of lengths, `length[kind][columns - 1]`.
     """
 
     def follow(begin, before, weight, stretches):
@@ -29,7 +29,7 @@ def list_ways(cuts, likely, labels, priors):
             return
         for end in (cut for cut in cuts if cut > begin):
             for kind in range(len(priors["ends"])):
-                comes = priors["ends"][kind] if before is None else priors["change"][before][kind]
+                comes = priors["begins"][kind] if before is None else priors["change"][before][kind]
                 long = priors["length"][kind][end - begin - 1]
                 if math.isinf(comes) or math.isinf(long):
                     continue

@@ -46,8 +46,8 @@ def put(ends, along_m, heights_m, witnesses):
         ends[columns, rows, incidence, end] = n
 
 
-def label(ends, *, is_outer=False):
-    return label_line(SurfaceCounts(0.0, ends), is_outer=is_outer)
+def label(ends, *, is_outer=False, goes_on=(False, False)):
+    return label_line(SurfaceCounts(0.0, ends), is_outer=is_outer, goes_on=goes_on)
 
 
 def spans(stretches):
@@ -85,6 +85,27 @@ class TestByHand:
         (found,) = label(ends)
         assert found.kind == "low" and found.lintel_m == pytest.approx(1.1)
         assert found.p > 0.95
+
+    def test_a_desk_before_a_window_is_low(self):
+        """Over all of it rays leave the room; no lintel was seen."""
+        ends = wall(2, top_m=0.9)
+        put(ends, (0, 2), (0.9, 1.9), {(OBLIQUE, BEYOND): 2, (OBLIQUE, LOST): 1})
+        (found,) = label(ends, is_outer=True)
+        assert found.kind == "low" and found.lintel_m == pytest.approx(0.9)
+
+    def test_a_way_to_the_next_wall_is_a_door_only_under_a_lintel(self):
+        """A wall of 3 m, and what rays show from there to the next one."""
+        under, free = wall(3.9), wall(3.9)
+        put(under, (3.0, 3.9), (0, 2.1), {(OBLIQUE, BEYOND): 3})
+        put(free, (3.0, 3.9), (0, CEILING_M), {(OBLIQUE, BEYOND): 3})
+        goes_on = (False, True)
+        assert spans(label(under, goes_on=goes_on)) == [("solid", 0, 3), ("door", 3, 3.9)]
+        assert spans(label(free, goes_on=goes_on)) == [("solid", 0, 3), ("open", 3, 3.9)]
+
+    def test_a_slot_under_a_lintel_is_no_door(self):
+        ends = wall(4)
+        put(ends, (1.5, 1.8), (0, 2.1), {(OBLIQUE, BEYOND): 3})
+        assert [kind for kind, *_ in spans(label(ends))] == ["solid", "open", "solid"]
 
     def test_what_is_free_to_the_ceiling_and_wide_is_open(self):
         ends = wall(6)
@@ -144,13 +165,14 @@ def blocks(draw):
     return np.concatenate(parts)
 
 
-def enumerate_ways(ends, *, is_outer):
+def enumerate_ways(ends, *, is_outer, goes_on):
     """Return all ways to part a line, and what they are made of."""
     labels = priors.list_labels(ends.shape[1])
     likely = line_labels.weigh_columns(SurfaceCounts(0.0, ends), labels).tolist()
     own = list(zip(labels.kind.tolist(), labels.log_prior.tolist(), strict=True))
     known = {
-        "ends": priors.log_ends(is_outer=is_outer).tolist(),
+        "begins": priors.log_ends(is_outer=is_outer, goes_on=goes_on[0]).tolist(),
+        "ends": priors.log_ends(is_outer=is_outer, goes_on=goes_on[1]).tolist(),
         "change": priors.log_change(is_outer=is_outer).tolist(),
         "length": priors.log_lengths(len(ends)).tolist(),
     }
@@ -158,13 +180,16 @@ def enumerate_ways(ends, *, is_outer):
     return ways, likely, own, labels
 
 
+GOES_ON = st.tuples(st.booleans(), st.booleans())
+
+
 class TestAgainstAllWays:
     @settings(max_examples=60)
-    @given(blocks(), st.booleans())
-    def test_the_best_way_and_its_heights_are_those_of_all_ways(self, ends, is_outer):
-        ways, likely, own, labels = enumerate_ways(ends, is_outer=is_outer)
+    @given(blocks(), st.booleans(), GOES_ON)
+    def test_the_best_way_and_its_heights_are_those_of_all_ways(self, ends, is_outer, goes_on):
+        ways, likely, own, labels = enumerate_ways(ends, is_outer=is_outer, goes_on=goes_on)
         best, _ = max(ways, key=lambda way: way[0])
-        found = label(ends, is_outer=is_outer)
+        found = label(ends, is_outer=is_outer, goes_on=goes_on)
         columns = [(round(s.low_m / 0.05), round(s.high_m / 0.05), s) for s in found]
         stretches = [(begin, end, priors.KINDS.index(s.kind)) for begin, end, s in columns]
         # of two that weigh the same either is best
@@ -176,16 +201,16 @@ class TestAgainstAllWays:
             assert (stretch.sill_m, stretch.lintel_m) == pytest.approx(heights_m, nan_ok=True)
 
     @settings(max_examples=60)
-    @given(blocks(), st.booleans())
-    def test_probabilities_of_kinds_are_those_of_all_ways(self, ends, is_outer):
-        ways, likely, _, labels = enumerate_ways(ends, is_outer=is_outer)
+    @given(blocks(), st.booleans(), GOES_ON)
+    def test_probabilities_of_kinds_are_those_of_all_ways(self, ends, is_outer, goes_on):
+        ways, likely, _, labels = enumerate_ways(ends, is_outer=is_outer, goes_on=goes_on)
         shares = np.array(literal.kind_shares(ways, len(ends), len(KINDS)))
-        chain = line_labels._Chain(labels, np.array(likely), is_outer=is_outer)
+        chain = line_labels._Chain(labels, np.array(likely), is_outer=is_outer, goes_on=goes_on)
         assert chain.cuts.tolist() == literal.find_cuts(likely)
         between = chain.kind_shares()
         np.testing.assert_allclose(between.sum(axis=1), 1)
         np.testing.assert_allclose(between, shares[chain.cuts[:-1]], atol=1e-9)
-        for stretch in label(ends, is_outer=is_outer):
+        for stretch in label(ends, is_outer=is_outer, goes_on=goes_on):
             begin, end = round(stretch.low_m / 0.05), round(stretch.high_m / 0.05)
             kind = priors.KINDS.index(stretch.kind)
             assert stretch.p == pytest.approx(shares[begin:end, kind].mean(), abs=1e-9)
@@ -210,7 +235,9 @@ class TestPriors:
     @pytest.mark.parametrize("is_outer", [False, True])
     def test_something_follows_each_kind_and_is_at_the_ends(self, is_outer):
         np.testing.assert_allclose(np.exp(priors.log_change(is_outer=is_outer)).sum(axis=1), 1)
-        assert np.exp(priors.log_ends(is_outer=is_outer)).sum() == pytest.approx(1)
+        for goes_on in (False, True):
+            ends = priors.log_ends(is_outer=is_outer, goes_on=goes_on)
+            assert np.exp(ends).sum() == pytest.approx(1)
 
     def test_lengths_of_a_kind_are_likely_one_in_all(self):
         """Columns of 5 cm sum a density of the length to within some percent."""

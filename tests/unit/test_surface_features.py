@@ -139,6 +139,12 @@ class TestOverlooked:
         counts = self.counts([5] * 4 + [20] * 12 + [0] * 4)
         assert look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked == pytest.approx(4 / 16)
 
+    def test_its_top_is_that_of_its_columns_in_the_mean(self):
+        """Rows end at 1.1 and 3.1 m."""
+        counts = self.counts([5] * 4 + [15] * 12 + [0] * 4)
+        top_m = (4 * 1.1 + 12 * 3.1) / 16
+        assert look([wall(0, 0, 1, 0, NAN)], counts=counts).top_m == pytest.approx(top_m)
+
     def test_half_a_witness_is_none(self):
         assert look([wall(0, 0, 1, 0, NAN)], counts=self.counts(5, n=0.5)).overlooked == 0
 
@@ -151,7 +157,8 @@ class TestOverlooked:
 
     def test_in_the_plane_nothing_is_known_of_it(self):
         counts = SurfaceCounts(0.0, np.full((20, 1, 2, N_ENDS), 3.0))
-        assert math.isnan(look([wall(0, 0, 1, 0, NAN)], counts=counts).overlooked)
+        found = look([wall(0, 0, 1, 0, NAN)], counts=counts)
+        assert math.isnan(found.overlooked) and math.isnan(found.top_m)
 
     def test_what_was_not_seen_at_all_is_not_overlooked(self):
         assert look([wall(0, 0, 1, 0, NAN)]).overlooked == 0

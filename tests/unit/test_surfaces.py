@@ -85,5 +85,5 @@ class TestWholePlan:
 
 
 def test_of_no_walls_there_are_no_surfaces(looked):
-    found = label_surfaces([], looked, np.empty((0, 2)), max_opening_m=2.0)
+    found = label_surfaces([], looked, np.empty((0, 2)), max_opening_m=2.0, max_door_m=1.2)
     assert found.walls == found.tops_m == found.leaves_m == []

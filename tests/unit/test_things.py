@@ -25,6 +25,7 @@ PARTITION = Features(
     thickness_m=0.12,
     solid=0.7,
     witnesses=1.0,
+    top_m=2.6,
     overlooked=0.0,
     deep=0.0,
     n_inner=2,
@@ -42,6 +43,7 @@ OPEN_LEAF = replace(
     length_m=0.85,
     thickness_m=INF,
     solid=1.0,
+    top_m=2.0,
     overlooked=0.9,
     deep=0.03,
     n_inner=1,
@@ -53,6 +55,7 @@ CUPBOARD = replace(
     length_m=0.9,
     thickness_m=INF,
     solid=1.0,
+    top_m=1.5,
     overlooked=0.8,
     deep=0.1,
     n_inner=0,
@@ -88,7 +91,7 @@ def test_each_is_what_it_is(found, kind):
 @pytest.mark.parametrize(("found", "kind"), TEXTBOOK)
 def test_what_is_not_known_of_it_says_nothing(found, kind):
     """As of planar scans, which do not see over anything."""
-    unknown = weigh(replace(found, overlooked=NAN))
+    unknown = weigh(replace(found, overlooked=NAN, top_m=NAN))
     nothing = weigh(replace(found, **dict.fromkeys(things.DENSITIES, NAN)))
     assert unknown.argmax() == kind
     np.testing.assert_allclose(nothing, np.array(things.SHARES) / sum(things.SHARES))
@@ -108,6 +111,7 @@ def test_a_building_without_furniture_has_less_of_it():
     [
         (PARTITION, WALL, {"n_inner": 0}),
         (PARTITION, WALL, {"overlooked": 0.5}),
+        (PARTITION, WALL, {"top_m": 1.5}),
         (PARTITION, WALL, {"thickness_m": INF}),
         (PARTITION, WALL, {"through_glass": 0.9}),
         (PARTITION, WALL, {"before_m": 0.6}),

@@ -20,6 +20,7 @@ from scanplan.plan.model.wall_labels import count_wall, label_wall
 
 MAX_OPENING_M = 2.0
 NO_WAY_M = np.empty((0, 2))
+WIDEST_M = {"max_opening_m": MAX_OPENING_M, "max_door_m": 1.2}
 
 
 def parts(wall, looked):
@@ -159,7 +160,7 @@ class TestLowParts:
 
         monkeypatch.setattr(things, "weigh_things", keep)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, NO_WAY_M, max_opening_m=MAX_OPENING_M)
+        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)
         assert [features.overlooked for features in asked] == [0, pytest.approx(1, abs=0.05)]
         assert np.isnan(found.tops_m).all()
@@ -167,7 +168,7 @@ class TestLowParts:
     def test_it_stays_where_both_sides_were_seen(self):
         scans = self.look() + self.look(SOUTH_M, -0.2)
         wall, looked = paired(scans, [(0, 5)], [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, NO_WAY_M, max_opening_m=MAX_OPENING_M)
+        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
         assert [round(part.length_m, 1) for part in found.walls] == [3, 2]
         assert found.tops_m == pytest.approx([np.nan, 1.1], nan_ok=True)
 

@@ -340,6 +340,7 @@ class _Survey:
             labelled = label_surfaces(
                 *(walls, self.rays, self.track_m),
                 max_opening_m=self.settings.openings.max_opening_m,
+                max_door_m=self.settings.openings.max_door_m,
             )
             walls, tops_m = labelled.walls, labelled.tops_m
             open_leaves_m = labelled.leaves_m
@@ -519,6 +520,8 @@ class _Survey:
             unpaired_m=surfaces.unpaired_m,
             min_length_m=self.settings.openings.min_opening_m,
         )
+        if self.labels:
+            return bare
         return opening_kinds.decide_bare_spans(
             *(bare, self.rays, self.track_m, areas),
             max_width_m=self.settings.openings.max_opening_m,

@@ -49,7 +49,9 @@ class Stretch:
         return self.high_m - self.low_m
 
 
-def label_line(counts: SurfaceCounts, *, is_outer: bool) -> list[Stretch]:
+def label_line(
+    counts: SurfaceCounts, *, is_outer: bool, goes_on: tuple[bool, bool] = (False, False)
+) -> list[Stretch]:
     """Return the most probable stretches of a line, in order.
 
     Parameters
@@ -57,10 +59,12 @@ def label_line(counts: SurfaceCounts, *, is_outer: bool) -> list[Stretch]:
     counts : surface_counts.SurfaceCounts
     is_outer : bool
         Whether one side of it was seen alone: it may be a facade.
+    goes_on : (bool, bool)
+        Whether it begins, and ends, beyond what was seen of it, at the next wall.
     """
     labels = priors.list_labels(counts.ends.shape[1])
     likely = weigh_columns(counts, labels)
-    chain = _Chain(labels, likely, is_outer=is_outer)
+    chain = _Chain(labels, likely, is_outer=is_outer, goes_on=goes_on)
     shares = chain.kind_shares()
     stretches = []
     for begin, end, label in chain.best_path():
@@ -97,11 +101,20 @@ def _find_cuts(likely: FloatArray) -> IntArray:
 class _Chain:
     """Sums over all ways to part a line into stretches, and the best of them."""
 
-    def __init__(self, labels: priors.Labels, likely: FloatArray, *, is_outer: bool):
+    def __init__(
+        self,
+        labels: priors.Labels,
+        likely: FloatArray,
+        *,
+        is_outer: bool,
+        goes_on: tuple[bool, bool],
+    ):
         self.cuts = _find_cuts(likely)
         self._labels = labels
         self._change = priors.log_change(is_outer=is_outer)
-        self._ends = priors.log_ends(is_outer=is_outer)
+        self._begin, self._end = (
+            priors.log_ends(is_outer=is_outer, goes_on=goes_on_here) for goes_on_here in goes_on
+        )
         self._score = np.vstack([np.zeros(likely.shape[1]), np.cumsum(likely, axis=0)])[self.cuts]
         self._n = len(self.cuts) - 1
         self._rows = [np.flatnonzero(labels.kind == kind) for kind in range(_N_KINDS)]
@@ -122,11 +135,11 @@ class _Chain:
         """Return what enters each kind at each cut, and what ended in each there, (b, k)."""
         entry = np.full((self._n + 1, _N_KINDS), -np.inf)
         ended = np.full((self._n + 1, _N_KINDS), -np.inf)
-        entry[0] = self._ends
+        entry[0] = self._begin
         for end in range(1, self._n + 1):
             ended[end] = add(self._inner[end - 1] + entry[:end], axis=0)
             entry[end] = add(ended[end][:, None] + self._change, axis=0)
-        ended[self._n] += self._ends
+        ended[self._n] += self._end
         return entry, ended
 
     def best_path(self) -> list[tuple[int, int, int]]:
@@ -147,7 +160,7 @@ class _Chain:
         """Return the probability (n, k) of each kind between neighbouring cuts."""
         entry, ended = self._forward(np.logaddexp.reduce)
         whole = np.logaddexp.reduce(ended[self._n])
-        after = self._ends
+        after = self._end
         entered = np.full((self._n + 1, _N_KINDS), -np.inf)
         change = np.zeros((self._n + 1, _N_KINDS))
         for end in range(self._n, 0, -1):

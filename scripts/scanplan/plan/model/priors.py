@@ -16,6 +16,7 @@ KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
 way under a lintel; a hole or pane above a sill; a shut leaf behind the face, under a lintel."""
 SOLID, LOW, OPEN, GLASS, DOOR, WINDOW, SHUT = range(len(KINDS))
 _WALL, _FREE, _RECESS, _PANE, _OVER = range(5)
+_BEHIND = (_OVER, _FREE)
 _ENDS = np.array(
     (
         ((0.89, 0.02, 0.01, 0.02, 0.06), (0.87, 0.03, 0.01, 0.02, 0.07)),
@@ -36,7 +37,8 @@ _SILL_M, _WINDOW_TOP_M, _LEAST_WINDOW = (0.3, 1.7), (1.5, 3.1), 2
 # from where to where edges are looked for, above the floor; rows of a window at least
 _MEAN_M = {SOLID: 3.0, LOW: 2.0, OPEN: 1.5, GLASS: 2.5}
 """Mean length of what has no usual one; of panes beyond the least."""
-_PANE_M = 0.4  # panes to the floor are no narrower: slots are joints of things
+_LEAST_M = {GLASS: 0.4, WINDOW: 0.4, DOOR: 0.5, SHUT: 0.5}
+"""What is narrower is a joint of things: no pane, and nobody goes through."""
 _LEAF_M = (0.9, 0.1)  # usual width of a door of one leaf (DIN 18101: 0.75 to 1.0), its deviation
 _SASH_M = (1.2, 0.3)  # usual width of a window, and the deviation of its logarithm
 _FROM_SOLID = {
@@ -56,6 +58,9 @@ _AT_ENDS = {
     False: {SOLID: 0.74, LOW: 0.03, OPEN: 0.1, GLASS: 0.03, DOOR: 0.07, SHUT: 0.02, WINDOW: 0.01},
     True: {SOLID: 0.76, LOW: 0.06, OPEN: 0.08, GLASS: 0.03, DOOR: 0.03, SHUT: 0.01, WINDOW: 0.03},
 }
+_AT_NEXT = {OPEN: 0.75, SOLID: 0.2, GLASS: 0.03, DOOR: 0.01, SHUT: 0.01}
+"""Likewise where none of its faces was seen up to the next wall: nearly always nothing is there; a
+lintel, or in the plane the usual width of a door, says otherwise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,15 +101,15 @@ def list_labels(n_rows: int) -> Labels:
     """Return the labels of a line whose heights are in so many rows."""
     if n_rows == 1:
         spans = [
-            *((SOLID, 0, 1, _WALL), (OPEN, 0, 1, _FREE), (GLASS, 0, 1, _PANE)),
-            *((DOOR, 0, 1, _FREE), (SHUT, 0, 1, _RECESS)),
+            *((SOLID, 0, 1, _WALL, _WALL), (OPEN, 0, 1, _FREE, _WALL)),
+            *((GLASS, 0, 1, _PANE, _WALL), (DOOR, 0, 1, _FREE, _WALL)),
+            (SHUT, 0, 1, _RECESS, _WALL),
         ]
     else:
         spans = _list_spans(n_rows)
-    kind, low, high, state = np.array(spans).T
+    kind, low, high, state, around = np.array(spans).T
     row = np.arange(n_rows)
     is_within = (row >= low[:, None]) & (row < high[:, None])
-    around = np.where(kind == LOW, _OVER, _WALL)
     state_of_row = np.where(is_within, state[:, None], around[:, None])
     count = np.bincount(kind, minlength=len(KINDS))
     edges_m = ROWS_M if n_rows > 1 else np.full(2, np.nan)
@@ -117,17 +122,21 @@ def list_labels(n_rows: int) -> Labels:
     )
 
 
-def _list_spans(n_rows: int) -> list[tuple[int, int, int, int]]:
-    """Return kind, first row, row behind the last, and state, of labels in space."""
-    spans = [(SOLID, 0, n_rows, _WALL), (OPEN, 0, n_rows, _FREE), (GLASS, 0, n_rows, _PANE)]
-    spans += [(LOW, 0, top, _WALL) for top in _rows_between(_LOW_M)]
-    spans += [(GLASS, 0, top, _PANE) for top in _rows_between(_GLASS_M)]
+def _list_spans(n_rows: int) -> list[tuple[int, int, int, int, int]]:
+    """Return kind, first row, row behind the last, state, and that of other rows, in space."""
+    spans = [
+        *((SOLID, 0, n_rows, _WALL, _WALL), (OPEN, 0, n_rows, _FREE, _WALL)),
+        (GLASS, 0, n_rows, _PANE, _WALL),
+    ]
+    # behind a low thing is a wall of the room, or a way out of it, as a window
+    spans += [(LOW, 0, top, _WALL, over) for top in _rows_between(_LOW_M) for over in _BEHIND]
+    spans += [(GLASS, 0, top, _PANE, _WALL) for top in _rows_between(_GLASS_M)]
     for top in _rows_between(_LINTEL_M):
-        spans += [(DOOR, 0, top, _FREE), (SHUT, 0, top, _RECESS)]
+        spans += [(DOOR, 0, top, _FREE, _WALL), (SHUT, 0, top, _RECESS, _WALL)]
     for sill in _rows_between(_SILL_M):
         for top in _rows_between(_WINDOW_TOP_M):
             if top - sill >= _LEAST_WINDOW:
-                spans += [(WINDOW, sill, top, _FREE), (WINDOW, sill, top, _PANE)]
+                spans += [(WINDOW, sill, top, of, _WALL) for of in (_FREE, _PANE)]
     return spans
 
 
@@ -142,12 +151,14 @@ def log_lengths(longest: int) -> FloatArray:
     out = np.zeros((len(KINDS), longest))
     for kind, mean_m in _MEAN_M.items():
         out[kind] = -length_m / mean_m + np.log(COLUMN_M / mean_m)
-    out[GLASS] = np.where(length_m < _PANE_M, -np.inf, out[GLASS] + _PANE_M / _MEAN_M[GLASS])
+    out[GLASS] += _LEAST_M[GLASS] / _MEAN_M[GLASS]
     usual = _normal(length_m, *_LEAF_M)
     out[DOOR] = _log(0.75 * usual + 0.25 * _log_uniform(length_m, 0.55, 2.6))
     out[SHUT] = _log(0.9 * usual + 0.1 * _log_uniform(length_m, 0.6, 2.0))
     sash = _normal(np.log(length_m), np.log(_SASH_M[0]), _SASH_M[1]) / length_m
     out[WINDOW] = _log(0.8 * sash + 0.2 * _log_uniform(length_m, 0.4, 6.0))
+    for kind, least_m in _LEAST_M.items():
+        out[kind, length_m < least_m] = -np.inf
     return out
 
 
@@ -157,12 +168,13 @@ def log_change(*, is_outer: bool) -> FloatArray:
     return np.stack([_log_shares(shares[kind]) for kind in range(len(KINDS))])
 
 
-def log_ends(*, is_outer: bool) -> FloatArray:
-    """Return (k,): what a line begins and ends with, log.
+def log_ends(*, is_outer: bool, goes_on: bool) -> FloatArray:
+    """Return (k,): what a line begins or ends with, log.
 
-    Of what was seen from one side alone more is low: most furniture is such.
+    Of what was seen from one side alone more is low: most furniture is such. Where it goes on
+    beyond what was seen of it, to the next wall, it is open.
     """
-    return _log_shares(_AT_ENDS[is_outer])
+    return _log_shares(_AT_NEXT if goes_on else _AT_ENDS[is_outer])
 
 
 def _normal(x: FloatArray, mean: float, sigma: float) -> FloatArray:

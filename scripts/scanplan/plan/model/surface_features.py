@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 import shapely
 
-from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, SurfaceCounts
+from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, ROWS_M, SurfaceCounts
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.tolerances import BEHIND_M
@@ -35,6 +35,8 @@ class Features:
         Share of its length that is no door, window or pane.
     witnesses : float
         How many places saw it, in the mean of its columns and of that of all surfaces.
+    top_m : float
+        How high it was seen, in the mean of its columns; NaN of planar scans.
     overlooked : float
         On what share of its length rays pass over what was seen of it; NaN of planar scans.
     deep : float
@@ -62,6 +64,7 @@ class Features:
     thickness_m: float
     solid: float
     witnesses: float
+    top_m: float
     overlooked: float
     deep: float
     n_inner: float
@@ -104,6 +107,7 @@ class Surroundings:
                 thickness_m=_or_inf(wall.thickness_m),
                 solid=seen.solid,
                 witnesses=seen.witnesses / max(float(usual), _SEEN),
+                top_m=seen.top_m,
                 overlooked=seen.overlooked,
                 deep=seen.deep,
                 n_inner=n_inner,
@@ -222,6 +226,7 @@ class _Seen:
 
     solid: float
     witnesses: float
+    top_m: float
     overlooked: float
     deep: float
 
@@ -234,7 +239,7 @@ class _Seen:
         is_seen = is_solid & is_face.any(axis=1)
         solid = float(is_solid.mean())
         if not is_seen.any():
-            return cls(solid, 0.0, math.nan if n_rows == 1 else 0.0, 0.0)
+            return cls(solid, 0.0, math.nan, math.nan if n_rows == 1 else 0.0, 0.0)
         ends, is_face = ends[is_seen], is_face[is_seen]
         row = np.arange(n_rows)
         lowest = is_face.argmax(axis=1)[:, None]
@@ -245,6 +250,7 @@ class _Seen:
         return cls(
             solid=solid,
             witnesses=float(ends[:, :, FACE].sum(axis=1).mean()),
+            top_m=math.nan if n_rows == 1 else float(ROWS_M[highest + 1].mean()),
             overlooked=math.nan if n_rows == 1 else float(is_over.any(axis=1).mean()),
             deep=float(returned[DEEP] / returned.sum()),
         )

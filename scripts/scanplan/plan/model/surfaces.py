@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from scanplan.plan.model import glass_views, things, wall_labels
+from scanplan.plan.model import glass_views, line_ends, things, wall_labels
 from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.ray_set import RaySet
@@ -31,7 +31,12 @@ class LabelledSurfaces:
 
 
 def label_surfaces(
-    walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray, *, max_opening_m: float
+    walls: Sequence[PlanWall],
+    rays: RaySet,
+    track_m: FloatArray,
+    *,
+    max_opening_m: float,
+    max_door_m: float,
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -44,6 +49,8 @@ def label_surfaces(
         Where the sensor was, one place after the other.
     max_opening_m : float
         What is open for longer parts a wall in two.
+    max_door_m : float
+        Walls go on for a door as wide to the next one.
     """
     parts = [
         (part, top_m)
@@ -53,6 +60,18 @@ def label_surfaces(
     found = observe_surfaces([part for part, _ in parts], rays)
     kinds = things.weigh_things(found).argmax(axis=1).tolist()
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
+    longer = line_ends.lengthen_walls([wall for wall, _ in kept], max_door_m)
+    kept = [
+        part
+        for (wall, top_m), whole in zip(kept, longer, strict=True)
+        for part in (
+            [(wall, top_m)]
+            if whole.length_m == wall.length_m or not math.isnan(top_m)
+            else wall_labels.label_wall(
+                wall, rays, track_m, max_opening_m=max_opening_m, longer=whole
+            )
+        )
+    ]
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end

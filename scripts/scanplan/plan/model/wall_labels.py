@@ -9,7 +9,7 @@ import numpy as np
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.model import line_labels, opening_edges, surface_counts
+from scanplan.plan.model import line_ends, line_labels, opening_edges, surface_counts
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
 from scanplan.plan.openings import CLOSED, Opening
@@ -30,7 +30,12 @@ def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
 
 
 def label_wall(
-    wall: PlanWall, rays: RaySet, track_m: FloatArray, *, max_opening_m: float
+    wall: PlanWall,
+    rays: RaySet,
+    track_m: FloatArray,
+    *,
+    max_opening_m: float,
+    longer: PlanWall | None = None,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -43,10 +48,15 @@ def label_wall(
         Where the sensor was, one place after the other.
     max_opening_m : float
         What is open for longer parts a wall in two.
+    longer : plan_wall.PlanWall, optional
+        The same as far as it may go on, see `line_ends.lengthen_walls`.
     """
-    counts = surface_counts.add_passages(count_wall(wall, rays), wall.line, rays, track_m)
-    stretches = line_labels.label_line(counts, is_outer=not wall.right)
-    stretches[-1] = replace(stretches[-1], high_m=wall.high_m)
+    whole = longer or wall
+    counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, track_m)
+    goes_on = (whole.low_m < wall.low_m, whole.high_m > wall.high_m)
+    stretches = line_labels.label_line(counts, is_outer=not wall.right, goes_on=goes_on)
+    stretches[-1] = replace(stretches[-1], high_m=whole.high_m)
+    stretches = line_ends.end_where_seen(stretches, wall.low_m, wall.high_m)
     for run in _part_runs(stretches, max_opening_m):
         part = _clip_wall(wall, run[0].low_m, run[-1].high_m)
         if part.members and part.length_m >= END_M:

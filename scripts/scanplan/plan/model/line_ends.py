@@ -1,0 +1,66 @@
+"""How far walls go on beyond their faces: doors stand at the ends of walls, too."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from scanplan.geometry import intersections
+from scanplan.plan.model.line_labels import Stretch
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import CORNER_M
+
+_WAYS = ("door", "shut", "glass")
+
+
+def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
+    """Return walls that go on to the next one across their way, or in it; of two one goes on.
+
+    Parameters
+    ----------
+    walls : sequence of plan_wall.PlanWall
+    most_m : float
+        Of a door, which is all that may be beyond a wall's faces.
+    """
+    spans = intersections.stack_spans(walls)
+    return [_lengthen(number, walls, spans, most_m) for number in range(len(walls))]
+
+
+def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) -> list[Stretch]:
+    """Return stretches of a wall that was lengthened, beyond its faces none but ways.
+
+    Parameters
+    ----------
+    stretches : sequence of line_labels.Stretch
+    low_m, high_m : float
+        From where to where it has faces.
+    """
+    ways = [stretch for stretch in stretches if stretch.kind in _WAYS]
+    begin_m = low_m if not any(_middle_m(way) < low_m for way in ways) else -np.inf
+    end_m = high_m if not any(_middle_m(way) > high_m for way in ways) else np.inf
+    cut = [replace(s, low_m=max(s.low_m, begin_m), high_m=min(s.high_m, end_m)) for s in stretches]
+    return [stretch for stretch in cut if stretch.high_m > stretch.low_m]
+
+
+def _middle_m(stretch: Stretch) -> float:
+    return (stretch.low_m + stretch.high_m) / 2
+
+
+def _lengthen(
+    number: int, walls: Sequence[PlanWall], spans: intersections.SpanArrays, most_m: float
+) -> PlanWall:
+    wall = walls[number]
+    crossings = wall.find_crossings(spans)
+    half_m = np.array([walls[row].half_m for row in crossings.which]) / crossings.sine
+    ahead = [other for other in walls[number + 1 :] if wall.goes_on_as(other)]
+    ends_m = np.array([wall.line.along_m(other.ends) for other in ahead]).reshape(-1)
+    near_m = np.concatenate([crossings.place_m - half_m, crossings.place_m + half_m, ends_m])
+
+    def go_on(end_m: float, sign: int) -> float:
+        if (np.abs(crossings.place_m - end_m) <= half_m + CORNER_M).any():
+            return end_m
+        beyond_m = sign * (near_m - end_m)
+        beyond_m = beyond_m[(beyond_m > 0) & (beyond_m <= most_m)]
+        return end_m + sign * float(beyond_m.min(initial=np.inf)) if len(beyond_m) else end_m
+
+    return replace(wall, low_m=go_on(wall.low_m, -1), high_m=go_on(wall.high_m, 1))
