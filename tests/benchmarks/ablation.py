@@ -23,7 +23,6 @@ from ablation_switches import Rule, switched_off
 from realistic.floors import Floor, is_named
 
 import assemble_plan
-import extract_chosen_walls
 from scanplan.lab.evaluation.scores import score_files
 from scanplan.plan import planning
 from scanplan.project import code_files, dataset_files, stage_settings
@@ -34,9 +33,6 @@ from scanplan.types import Settings
 
 BASE = "nothing"
 """The name of the plan with no rule off."""
-_ANEW = "nothing, walls of scans extracted anew"
-BASES = {name: _ANEW if rule.extracts else BASE for name, rule in RULES.items()}
-"""By the name of each rule that of the plan it is compared with."""
 _PLACES = ("code/results", "results", ".")
 _PROCESSES = 2
 _SCRIPTS = Path(assemble_plan.__file__).parent
@@ -73,7 +69,7 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     with workers.open_pool(min(_PROCESSES, len(jobs))) as run:
         found = dict(zip([path.name for path in drives], run(ablate, jobs), strict=True))
     for kind, of_kind in _by_kind(drives, found).items():
-        ablation_table.report(kind, of_kind, {name: RULES[name] for name in rules}, BASES, kept)
+        ablation_table.report(kind, of_kind, {name: RULES[name] for name in rules}, BASE, kept)
 
 
 def find_floor(results: Path) -> Floor:
@@ -119,20 +115,17 @@ def ablate(
     own = own_settings(results, settings)
     survey = _digest([json.dumps(own, sort_keys=True), *_survey_parts(results, own)])
     planar = tables.ScanStore(results / "scans.parquet").planar
-    chosen = {name: RULES[name] for name in names}
-    rules = {BASE: Rule({}, ()), **chosen}
-    if any(rule.extracts for rule in chosen.values()):
-        rules = {_ANEW: Rule({}, (), extracts=True), **rules}
+    rules = {BASE: Rule({}, ()), **{name: RULES[name] for name in names}}
     found: dict[str, dict[str, Any]] = {}
     for name, rule in rules.items():
         if rule.planar not in (None, planar):
-            found[name] = found[BASES[name]]
+            found[name] = found[BASE]
             continue
         file = kept / f"{name.replace(' ', '_').replace(',', '')}.json"
         digest = _digest([code_digest(), survey, name])
         found[name] = _read_kept(file, digest) or _measure(results, own, rule, found)
         file.write_text(json.dumps({"code": digest, **found[name]}, sort_keys=True))
-    n_changed = sum(found[name]["tables"] != found[BASES[name]]["tables"] for name in names)
+    n_changed = sum(found[name]["tables"] != found[BASE]["tables"] for name in names)
     print(f"ablate, {results.name}: {n_changed} of {len(names)} rules change the plan", flush=True)
     return found
 
@@ -164,14 +157,6 @@ def make_plan(results: Path, settings: Settings, rule: Rule, plan: Path) -> None
     segments = results / "plan/segments.parquet"
     stop = stage_settings.select_section(settings, "selection", "stop")
     with switched_off(rule), _silence():
-        if rule.extracts:
-            extractor, segments = settings["plan"]["extractor"], plan / "segments.parquet"
-            extract_chosen_walls.extract_chosen_walls(
-                *(scans, registration, selection, segments),
-                extractor=extractor,
-                settings=stage_settings.select_extractor(settings, extractor),
-                stop=stop,
-            )
         assemble_plan.assemble_plan(
             *(segments, selection, scans, registration),
             {table: plan / f"{table}.parquet" for table in planning.TABLES},
@@ -203,7 +188,7 @@ def _survey_parts(results: Path, settings: Settings) -> Iterable[bytes | str]:
 @cache
 def code_digest() -> str:
     """Return what names the code that a plan is made and measured with, and the rules."""
-    stages = ("assemble_plan", "extract_chosen_walls", "validate_plan")
+    stages = ("assemble_plan", "validate_plan")
     scripts = [*(_SCRIPTS / f"{stage}.py" for stage in stages), Path(score_files.__file__)]
     helpers = {file for script in scripts for file in (script, *code_files.list_helpers(script))}
     own = [*_OWN.glob("ablation_*.py"), _OWN / "realistic/scoring.py"]

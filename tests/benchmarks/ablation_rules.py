@@ -116,10 +116,6 @@ _ROOMS: dict[str, Rule] = {
         find_none,
         "plan.wall_ground:find_bare_spans",
         "plan.wall_ground:_kind_beyond",
-        "plan.opening_kinds:decide_bare_spans",
-    ),
-    "kinds of bare spans": make_rule(
-        "plan.opening_kinds:decide_bare_spans", give_back(0), planar=False
     ),
 }
 _IN_THE_PLANE = {name: replace(rule, planar=True) for name, rule in _FURNITURE.items()}

@@ -8,13 +8,12 @@ import importlib
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from scanplan.extraction.face_arrangement import Faces
-from scanplan.plan import half_height, walls
+from scanplan.plan import walls
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.face_raster import CELL_M, FaceRaster
 from scanplan.types import BoolArray
@@ -22,8 +21,6 @@ from scanplan.types import BoolArray
 Function = Callable[..., Any]
 Switch = Callable[[Function], Function]
 """Makes of a function the one that stands for it while the rule is off."""
-
-_DOOR_SILL_M = 0.3  # ASSUME: what begins higher is a window, where heights alone decide
 
 
 @dataclass(frozen=True)
@@ -37,23 +34,18 @@ class Rule:
         package.module:Class.name below scanplan.
     code : tuple of str
         What would go with the rule: modules below scanplan, or functions and classes in them.
-    extracts : bool
-        Whether it is asked of single scans, so that their walls are extracted anew.
     planar : bool, optional
         Whether it is asked of planar scans alone, or of those in space alone.
     """
 
     switches: Mapping[str, Switch]
     code: tuple[str, ...]
-    extracts: bool = False
     planar: bool | None = None
 
 
-def make_rule(
-    place: str, switch: Switch, *code: str, extracts: bool = False, planar: bool | None = None
-) -> Rule:
+def make_rule(place: str, switch: Switch, *code: str, planar: bool | None = None) -> Rule:
     """Return a rule of one function, whose code that is unless other code is named."""
-    return Rule({place: switch}, code or (place,), extracts, planar)
+    return Rule({place: switch}, code or (place,), planar)
 
 
 @contextmanager
@@ -124,32 +116,6 @@ def keep_fronts(_: Function) -> Function:
     return lambda of_plan, *_args, **_named: (of_plan, [], [])
 
 
-def keep_low_surfaces(_: Function) -> Function:
-    """Return all walls with the heights of their tops."""
-    return lambda of_plan, **_named: (
-        of_plan,
-        [half_height.estimate_wall_top_m(wall) for wall in of_plan],
-    )
-
-
-def name_by_sill(_: Function) -> Function:
-    """Call all openings doors, or windows where something was seen below them."""
-
-    def name_gaps(of_plan: list[PlanWall], *_args: Any, **_named: Any) -> list[PlanWall]:
-        return [
-            replace(
-                wall,
-                openings=[
-                    replace(gap, kind="window" if gap.sill_m > _DOOR_SILL_M else "door")
-                    for gap in wall.openings
-                ],
-            )
-            for wall in of_plan
-        ]
-
-    return name_gaps
-
-
 def leave_leaves_alone(_: Function) -> Function:
     """Return the surfaces of leaves without those that show them again."""
     return lambda leaves, *_args, **_named: [leaf.face for leaf in leaves]
@@ -183,12 +149,3 @@ def keep_whole(_: Function) -> Function:
 def draw_as_seen(_: Function) -> Function:
     """Return the part of the floor itself."""
     return lambda part, *_args: part.simplify(CELL_M)
-
-
-def stand_nowhere(_: Function) -> Function:
-    """Return that no face stands before another."""
-
-    def stand(faces: Faces, _depth_m: float) -> BoolArray:
-        return np.zeros((len(faces), len(faces)), bool)
-
-    return stand

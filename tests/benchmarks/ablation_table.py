@@ -20,9 +20,7 @@ _PACKAGE = Path(scanplan.__file__).parent
 _LEAST = 5e-4  # of the last digit that is printed
 
 
-def report(
-    kind: str, found: Found, rules: Mapping[str, Rule], bases: Mapping[str, str], folder: Path
-) -> None:
+def report(kind: str, found: Found, rules: Mapping[str, Rule], base: str, folder: Path) -> None:
     """Print the rules as a table in Markdown and write it, and the same numbers as CSV.
 
     Parameters
@@ -32,12 +30,12 @@ def report(
     found : dict of str to dict
         By drive.
     rules : dict of str to Rule
-    bases : dict of str to str
-        By the name of each rule that of the plan it is compared with.
+    base : str
+        The name of the plan that all are compared with.
     folder : Path
         Where `<kind>.csv` and `<kind>.md` are written.
     """
-    rows = [row_of(name, rule, bases[name], found) for name, rule in rules.items()]
+    rows = [row_of(name, rule, base, found) for name, rule in rules.items()]
     measures = {**HEADLINES, **COUNTS}
     columns = ["rule", "lines", "changed", *(m for m in measures if any(m in row for row in rows))]
     columns.append("worst")

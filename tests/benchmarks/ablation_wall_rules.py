@@ -12,43 +12,13 @@ from ablation_switches import (
     give_back,
     give_each,
     keep_all_returns,
-    keep_low_surfaces,
     keep_whole,
     make_rule,
     mark_no_column,
-    name_by_sill,
     put,
-    stand_nowhere,
 )
 
 FACES: dict[str, Rule] = {
-    "furniture in single scans": make_rule(
-        "extraction.furniture:keep_walls",
-        give_back(0),
-        "extraction.furniture",
-        "extraction.face_evidence",
-        "extraction.face_arrangement",
-        extracts=True,
-    ),
-    "fronts of single scans": make_rule(
-        "extraction.furniture:stand_in_front",
-        stand_nowhere,
-        "extraction.face_arrangement:stand_in_front",
-        extracts=True,
-        planar=False,
-    ),
-    "walls by corners in single scans": make_rule(
-        "extraction.furniture:_are_walls_by_corners",
-        give_back(1),
-        "extraction.furniture:_are_walls_by_corners",
-        "extraction.furniture:_go_on_beyond_doors",
-        "extraction.furniture:_is_door_between",
-        "extraction.face_arrangement:find_corner_faces",
-        "extraction.face_arrangement:find_collinear_faces",
-        "extraction.face_evidence:gap_leads_on",
-        extracts=True,
-        planar=False,
-    ),
     "range bias": make_rule(
         "rays.range_bias:estimate_range_bias", answer(np.zeros(181)), "rays.range_bias"
     ),
@@ -64,7 +34,9 @@ FACES: dict[str, Rule] = {
         planar=True,
     ),
     "columns joined": make_rule("plan.faces.intervals:_join_columns", put(2, 0.0)),
-    "overlooked columns": make_rule("rays.face_raster:FaceRaster.is_overlooked", mark_no_column),
+    "overlooked columns": make_rule(
+        "rays.face_raster:FaceRaster.is_overlooked", mark_no_column, planar=True
+    ),
     "ends by scans": make_rule(
         "plan.faces.intervals:_trim_ends",
         give_back(0),
@@ -92,9 +64,9 @@ FACES: dict[str, Rule] = {
         "plan.faces.tracing:_without_furniture",
         give_back(0),
         "plan.faces.tracing:_without_furniture",
-        "extraction.furniture:find_furniture_fronts",
-        "extraction.face_arrangement:stand_before",
-        "extraction.face_arrangement:find_backs_m",
+        "plan.faces.furniture_fronts",
+        "plan.faces.face_arrangement",
+        planar=True,
     ),
     "owned points": make_rule(
         "plan.faces.tracing:owned_intervals", give_each(lambda _: []), "plan.faces.owned_points"
@@ -146,20 +118,6 @@ WALLS: dict[str, Rule] = {
         "plan.wall_faces:_without_open",
     ),
     "inferred but where open": make_rule("plan.wall_faces:_without_open", give_alone(2)),
-    "windows": make_rule("plan.windows:add_windows", give_back(0), "plan.windows", planar=False),
-    "kinds by likelihood": make_rule(
-        "plan.opening_kinds:decide_kinds",
-        name_by_sill,
-        "plan.opening_kinds:decide_kinds",
-        "plan.opening_kinds:_decide",
-        "plan.opening_kinds:weigh_kinds",
-    ),
-    "low surfaces": make_rule(
-        "plan.half_height:drop_low_surfaces", keep_low_surfaces, planar=False
-    ),
-    "tops of walls": make_rule(
-        "plan.half_height:estimate_wall_top_m", answer(math.nan), "plan.half_height", planar=False
-    ),
     "pillars": make_rule(
         "plan.planning:cut_off_pillars",
         give_each(lambda wall: [wall]),

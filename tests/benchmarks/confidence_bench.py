@@ -15,7 +15,7 @@ import numpy as np
 import shapely
 from scipy import optimize, special
 
-from scanplan.extraction import extractors, furniture, segments
+from scanplan.extraction import extractors, segments
 from scanplan.lab.evaluation import (
     length_metrics,
     opening_metrics,
@@ -143,7 +143,6 @@ def _extract(
     extractor = extractors.EXTRACTORS["cluster_ransac"]
     keywords = stage_settings.select_extractor(settings, "cluster_ransac")
     of_walls = extractors.select_settings(extractor.settings, keywords)
-    limits = extractors.select_settings(furniture.FurnitureLimits, keywords)
     sensors = sensor_keywords(chosen, "selection", folder / "registration.parquet")
     return [
         extractors.find_wall_segments(
@@ -152,7 +151,7 @@ def _extract(
             planar=planar,
             extractor=extractor,
             settings=of_walls,
-            limits=limits,
+            max_rmse_m=extractors.select_max_rmse_m(extractor, keywords),
             **sensors[scan_id],
         )
         for scan_id, xyz_m in scans

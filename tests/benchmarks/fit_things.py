@@ -23,7 +23,6 @@ from scanplan.lab.evaluation.scores import false_walls, score_files
 from scanplan.plan.model import things
 from scanplan.plan.model.surface_features import Features
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.project.settings import merge_settings
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray, Settings
@@ -75,9 +74,8 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     ]
     if not chosen:
         sys.exit(f"fit_things: no simulated floor of {' '.join(wanted)} is finished in {results}")
-    by_labels = merge_settings(settings, {"advanced": {"plan": {"surfaces": "labels"}}})
     with workers.open_pool(min(_PROCESSES, len(chosen))) as run:
-        found: list[Surfaces] = list(run(observe, [(path, by_labels) for path in chosen]))
+        found: list[Surfaces] = list(run(observe, [(path, settings) for path in chosen]))
     everything = _join(found)
     print(format_table(count_shares(everything), fit(everything)))
     kinds = [floors[path].kind for path in chosen]
@@ -103,7 +101,7 @@ def observe(results: Path, settings: Settings) -> Surfaces:
 
         return asked
 
-    rule = Rule({"plan.model.surfaces:observe_surfaces": record}, (), extracts=True)
+    rule = Rule({"plan.model.surfaces:observe_surfaces": record}, ())
     with tempfile.TemporaryDirectory() as made:
         ablation.make_plan(results, ablation.own_settings(results, settings), rule, Path(made))
     placed = score_files.place_results(results, recorded.truth, recorded.true_poses)

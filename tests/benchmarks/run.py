@@ -55,7 +55,7 @@ and elements, and a page with a picture of every floor, in FOLDER/scores/COMMIT,
 where floors are named: HALF is tuning, reporting or real, subset twelve drives. Recordings are
 simulated once and kept. Half of the kinds of buildings are for tuning, the others are only reported
 on. Words with an equals sign are settings that the plans are made with, as
-advanced.plan.surfaces=labels. `compare_realistic` says what changed between two such folders,
+plan.merge.min_scans=3. `compare_realistic` says what changed between two such folders,
 element by element.
 
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,

@@ -15,7 +15,7 @@ from scanplan.extraction import normals
 from scanplan.extraction.extractors import (
     EXTRACTORS,
     find_wall_segments,
-    select_limits,
+    select_max_rmse_m,
     select_settings,
 )
 from scanplan.project.stage_settings import select_extractors
@@ -193,12 +193,12 @@ def _extraction_times(
 
 
 def _keywords(name: str, settings: Settings) -> dict[str, Any]:
-    """Return what an extractor is called with beside a scan, as by the stage, without furniture."""
+    """Return what an extractor is called with beside a scan, as by the stage, and its settings."""
     return {
         "planar": False,
         "extractor": EXTRACTORS[name],
         "settings": select_settings(EXTRACTORS[name].settings, settings[name]),
-        "limits": select_limits(EXTRACTORS[name], settings[name]),
+        "max_rmse_m": select_max_rmse_m(EXTRACTORS[name], settings[name]),
     }
 
 

@@ -4,7 +4,6 @@ import numpy as np
 
 from helpers import toy_rooms
 from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
-from scanplan.extraction.furniture import FurnitureLimits
 
 _CLUSTERS = {"reach_deg": 3.5, "bandwidth_m": 0.3, "projection": "normal"}
 _THESIS = {"max_tilt_deg": 15.0, "model": "line", "max_trials": 50}
@@ -15,10 +14,12 @@ SETTINGS = {
     "thesis_cluster_ransac": toy_rooms.LIMITS | _CLUSTERS | _THESIS,
     "thesis_iterative_ransac": toy_rooms.LIMITS | _THESIS,
 }
-LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
+MAX_RMSE_M = 0.025
 
 
-def extract(name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, limits=LIMITS, **more):
+def extract(
+    name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, max_rmse_m=MAX_RMSE_M, **more
+):
     """Return the wall segments of a scan; `more` are further settings."""
     method = EXTRACTORS[name]
     return find_wall_segments(
@@ -28,7 +29,7 @@ def extract(name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, limits=
         planar=planar,
         extractor=method,
         settings=select_settings(method.settings, SETTINGS[name] | more),
-        limits=limits if method.drops_furniture else None,
+        max_rmse_m=max_rmse_m if method.drops_clutter else np.inf,
     )
 
 

@@ -6,9 +6,7 @@ The rooms of `house_making`: A is x 0 to 4, B 4.2 to 8, both y 0 to 4, below a c
 import numpy as np
 
 from helpers import house_making
-from helpers.toy_rooms import FURNITURE
 from helpers.wall_making import walls
-from scanplan.plan import planning
 from scanplan.rays import ray_set
 
 CEILING_M = 2.6
@@ -26,12 +24,6 @@ SENSORS = np.array(
 )
 IN_A = (0, 1, 2, 6)
 T_NS = np.arange(1, len(SENSORS) + 1, dtype=np.int64) * 1_000_000_000
-
-
-def settings(*, labels):
-    """Return settings by which labels or rules decide what surfaces are."""
-    furniture = FURNITURE | {"by_scan": not labels}
-    return planning.make_plan_settings(**house_making.PLAN | {"furniture": furniture})
 
 
 def segments():

@@ -29,18 +29,10 @@ LIMITS = {
     "seed": 1,
 }
 FURNITURE = {
-    "max_rmse_m": 0.025,
-    "wall_height_m": 1.0,
     "furniture_height_m": 2.1,
-    "hang_height_m": 1.2,
-    "over_share": 0.5,
-    "through_share": 0.15,
-    "missing_share": 0.5,
     "furniture_depth_m": 1.0,
     "furniture_length_m": 2.6,
-    "stub_length_m": 0.7,
     "door_width_m": 1.5,
-    "corner_m": 0.25,
 }
 
 

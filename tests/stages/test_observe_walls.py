@@ -10,7 +10,7 @@ from scanplan.errors import StageError
 from scanplan.selection import methods
 from scanplan.store import schemas, tables
 
-KNOWN = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+KNOWN = {**toy_rooms.LIMITS, "wall_height_m": 1.0}
 SETTINGS = {name: KNOWN[name] for name in methods.WALL_LIMITS if name in KNOWN}
 SETTINGS |= {"cell_m": 0.25, "reach_deg": 3.5, "max_tilt_deg": 15.0}
 

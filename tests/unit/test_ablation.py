@@ -31,7 +31,6 @@ from ablation_switches import (
 from scanplan.lab.evaluation.scores import score_files
 from scanplan.lab.evaluation.scores.score import Score
 
-BASES = dict.fromkeys(("strays", "tails"), ablation.BASE)
 OFF = {
     "strays": make_rule("plan.furniture.fronts:find_strays", find_none, "plan.furniture.strays"),
     "tails": make_rule("plan.faces.trimming:trim_tails", give_back(0)),
@@ -115,7 +114,7 @@ def test_a_plan_that_cannot_be_made_without_a_rule_is_said_to_be_none():
 
 
 def test_the_table_is_printed_and_written_and_names_what_changes_nothing(tmp_path, capsys):
-    ablation_table.report("planar, measured", FOUND, OFF, BASES, tmp_path)
+    ablation_table.report("planar, measured", FOUND, OFF, ablation.BASE, tmp_path)
     printed = capsys.readouterr().out
     assert "Changes nothing anywhere: tails" in printed
     assert (tmp_path / "planar_measured.md").read_text() in printed
@@ -150,7 +149,6 @@ def test_what_is_kept_is_read_again_and_other_code_makes_it_anew(tmp_path, monke
     monkeypatch.setattr(ablation, "_measure", measure)
     monkeypatch.setattr(ablation.tables, "ScanStore", lambda _: SimpleNamespace(planar=True))
     monkeypatch.setattr(ablation, "RULES", OFF)
-    monkeypatch.setattr(ablation, "BASES", BASES)
     settings = {"plan": {"method": "wall_length"}}
     first = ablation.ablate(results, tmp_path / "kept", list(OFF), settings)
     assert (

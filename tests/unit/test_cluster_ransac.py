@@ -1,4 +1,3 @@
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -131,20 +130,24 @@ def test_noise_leaves_no_second_wall_beside_the_first():
 
 
 def test_a_wall_goes_on_between_a_counter_and_the_cabinets_above_it():
-    """One beam passes over the counter and under the cabinets: what it meets has no normal."""
+    """One beam passes over the counter and under the cabinets: what it meets has no normal.
+
+    All three are upright surfaces; which of them are walls is not asked of one scan.
+    """
     wall, counter, cabinets = (
         (4, -3, 4, 3, 0, 2.6),
         (3.4, -0.6, 3.4, 0.9, 0, 0.9),
         (3.7, -0.6, 3.7, 0.9, 1.1, 2.2),
     )
-    found = extract(upright.returns([wall, counter, cabinets], columns=1800), (0, 0, 0))
-    assert found.start_m == pytest.approx(np.array([(4, -3)]), abs=0.1)
-    assert found.end_m == pytest.approx(np.array([(4, 3)]), abs=0.1)
+
+    def find_wall_y(*faces):
+        found = extract(upright.returns(faces, columns=1800), (0, 0, 0))
+        of_wall = np.abs(found.start_m[:, 0] - 4) < 0.1
+        return sorted(zip(found.start_m[of_wall, 1], found.end_m[of_wall, 1], strict=True))
+
+    assert find_wall_y(wall, counter, cabinets) == [pytest.approx((-3, 3), abs=0.1)]
     # without that beam it is two: nothing is known of what is between
-    hidden = extract(
-        upright.returns([wall, (*counter[:5], 1.1), cabinets], columns=1800), (0, 0, 0)
-    )
-    assert len(hidden) == 2
+    assert len(find_wall_y(wall, (*counter[:5], 1.1), cabinets)) == 2
 
 
 def test_a_shelf_on_the_line_of_a_wall_joins_its_pieces_and_the_floor_does_not():
@@ -191,19 +194,10 @@ def test_one_wall_in_99_percent_of_outliers():
     )
     dust = draw.uniform(-20, 20, (39_600, 3)) * (1, 1, 0.1)
     points = np.vstack([wall, dust])
-    lenient = replace(
-        extracting.LIMITS,
-        over_share=1.0,
-        through_share=np.inf,
-        missing_share=1.0,
-        wall_height_m=0.0,
-    )
-    found = extract(points, (0, 0, 0), limits=lenient)
+    found = extract(points, (0, 0, 0))
     assert len(found) >= 1
     assert found.start_m[0, 0] == pytest.approx(3, abs=0.02)
     assert found.normal[0] == pytest.approx([-1, 0], abs=0.02)
-    # most rays pass through it: what is behind it was met
-    assert len(extract(points, (0, 0, 0))) == 0
 
 
 def test_feet_of_a_wall_coincide_and_near_walls_stay_apart():

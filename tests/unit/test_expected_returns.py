@@ -85,7 +85,6 @@ def test_as_many_rays_are_expected_as_fit_into_the_angle_of_a_wall():
     assert found.expected.sum() == pytest.approx(EXPECTED, rel=0.01)
     assert found.returned.sum() == found.in_wall.sum() == pytest.approx(EXPECTED, rel=0.03)
     assert found.occluded.sum() == 0
-    assert found.missing_share == pytest.approx(0, abs=0.03)
     # square to the wall a column is wider
     assert found.expected[0, 20] == pytest.approx(10 * np.degrees(0.05 / 2), rel=0.01)
 
@@ -123,7 +122,6 @@ def test_of_a_plane_nothing_is_expected_from_farther_than_any_return():
     found = count_sent_rays(looked, face, -8.0, 320, 0.05, (0.0, 1.0))
     # 4 m to either side
     assert found.expected.sum() == pytest.approx(2 * np.degrees(np.arctan(4 / 3)), abs=3)
-    assert found.missing_share == pytest.approx(0, abs=0.03)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +154,6 @@ def test_of_glass_little_comes_back():
     found = sent(wall_or(np.nan))
     # the pane's own directions are empty, and so count for nothing where rays are expected
     assert found.returned.sum() == 0
-    assert found.missing_share == 1
     reached, returned, in_wall = found.reached(least_scans=1)
     assert np.isfinite(reached).all() and (returned == 0).all() and (in_wall == 0).all()
 
@@ -173,7 +170,7 @@ def test_rays_that_go_through_and_come_back_are_returned_but_not_in_the_wall():
 def test_what_stands_before_a_wall_hides_it():
     found = sent(wall_or(1.0))
     assert found.occluded.sum() == pytest.approx(EXPECTED, rel=0.03)
-    assert found.returned.sum() == 0 and found.missing_share == pytest.approx(0, abs=0.03)
+    assert found.returned.sum() == 0
     assert all(np.isnan(rows).all() for rows in found.reached(least_scans=1))
 
 
@@ -187,7 +184,7 @@ def test_only_beams_between_two_heights_are_expected():
 def test_at_grazing_angles_and_from_behind_nothing_is_expected():
     # 75 degrees beside the sensor is 7.46 m along
     beside = sent(wall_or(2.0), low_m=7.5)
-    assert beside.expected.sum() == 0 and len(beside.missing_share) == 0
+    assert beside.expected.sum() == 0
     looked = rays(((0, -2, 1), points_of(wall_or(2.0)) - (0, 4, 0)))
     face = cast_at_face(looked, NORTH, -1, 1, at_m=0.08)
     assert count_sent_rays(looked, face, -1.0, 40, 0.05, (0.0, 2.5)).expected.shape == (0, 40)
@@ -216,7 +213,6 @@ def test_five_columns_are_judged_together():
     assert in_wall.tolist()[2:5] == [0] * 3
     # fewer than 20 rays could be lost by chance: of the first column with its neighbours 15
     assert np.isnan(reached[[0, 6]]).all() and np.isfinite(reached[[1, 5]]).all()
-    assert found.missing_share == pytest.approx(1 / 5)
 
 
 def test_a_scan_that_something_hides_the_surface_from_says_nothing():
@@ -244,4 +240,3 @@ def test_more_scans_reach_a_surface_as_each_does(seed):
     inner = slice(2, 6)
     np.testing.assert_allclose(together[0][inner], summed[0][inner])
     np.testing.assert_allclose(together[1][inner], summed[1][inner])
-    assert (every.missing_share >= 0).all() and (every.missing_share <= 1).all()

@@ -9,7 +9,7 @@ from helpers.upright import returns
 from scanplan.extraction.extractors import EXTRACTORS, select_settings
 from scanplan.extraction.segments import SegmentLimits
 
-OURS = [name for name, extractor in EXTRACTORS.items() if extractor.drops_furniture]
+OURS = [name for name, extractor in EXTRACTORS.items() if extractor.drops_clutter]
 pytestmark = pytest.mark.parametrize("name", OURS)
 EITHER = pytest.mark.parametrize("planar", [False, True])
 
@@ -83,16 +83,14 @@ def test_points_must_be_finite(name):
         extract(name, points)
 
 
-def test_without_limits_furniture_stays_among_the_walls(name):
-    cabinet, wall = (4, -1, 4, 1, 0, 1.2), (6, -4, 6, 4, 0, 2.6)
-    points = returns([cabinet, wall])
-    everything = extract(name, points, (0, 0, 0), limits=None)
-    kept = extract(name, points, (0, 0, 0))
-    assert np.abs(everything.start_m[:, 0] - 4).min() < 0.01
-    assert kept.start_m[:, 0] == pytest.approx(np.full(len(kept), 6.0), abs=0.01)
-    assert len(kept) > 0
-    # furniture is told by its rays, and changes no wall
-    assert all((values(everything) == row).all(axis=1).any() for row in values(kept))
+def test_what_scatters_more_than_walls_do_is_none(name):
+    points = returns([(4, -1, 4, 1, 0, 2.6)])
+    rough = points + np.random.default_rng(1).normal(0, 0.03, points.shape) * (1, 0, 0)
+    found = extract(name, rough, (0, 0, 0), max_rmse_m=np.inf, inlier_m=0.1)
+    assert len(found) > 0 and found.rmse_m.max() > 0.025
+    assert (
+        len(extract(name, rough, (0, 0, 0), max_rmse_m=found.rmse_m.min() / 2, inlier_m=0.1)) == 0
+    )
 
 
 def test_settings_are_picked_from_more(name):

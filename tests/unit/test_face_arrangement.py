@@ -6,15 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.ray_making import turned
-from scanplan.extraction.face_arrangement import (
-    Faces,
-    find_collinear_faces,
-    find_corner_faces,
-    stand_before,
-    stand_in_front,
-)
+from scanplan.plan.faces.face_arrangement import Faces, stand_before
 
-DEPTH_M, DOOR_M, CORNER_M = 1.0, 1.5, 0.25
+DEPTH_M, DOOR_M = 1.0, 1.5
 
 
 def faces(*ends, line=None):
@@ -24,7 +18,7 @@ def faces(*ends, line=None):
     way /= np.hypot(*way.T)[:, None]
     number = np.arange(len(ends_m)) if line is None else np.array(line)
     normal = np.column_stack([-way[:, 1], way[:, 0]])
-    return Faces(ends_m, normal, np.ones(len(ends_m)), number)
+    return Faces(ends_m, normal, number)
 
 
 def before(found, chosen=None):
@@ -100,43 +94,8 @@ class TestStandBefore:
         assert (0, 1) in before(faces(shallow, deep, (2.2, 4, 2.2, 0.5)))
 
 
-def test_in_one_scan_whatever_stands_before_is_in_front():
-    found = faces(WALL, CABINET, (2, 1.2, 4, 1.2))
-    assert np.argwhere(stand_in_front(found, DEPTH_M)).tolist() == [[1, 0], [2, 1]]
-
-
-def test_corners_are_inner_where_faces_look_at_each_other():
-    # an inner corner at (2, 2) and an outer one at (2, -1)
-    found = faces((2, -1, 2, 2), (2, 2, -1, 2), (5, -1, 2, -1))
-    assert found.normal.tolist() == [[-1, 0], [0, -1], [0, -1]]
-    inner, outer = find_corner_faces(found, 0.1)
-    assert np.argwhere(inner).tolist() == [[0, 1, 1], [1, 0, 0]]
-    assert np.argwhere(outer).tolist() == [[0, 0, 2], [2, 1, 0]]
-
-
-@pytest.mark.parametrize(("gap_m", "count"), [(0.2, 2), (0.3, 0)])
-def test_ends_meet_within_reach(gap_m, count):
-    inner, outer = find_corner_faces(faces((2, 0, 2, 2), (2 - gap_m, 2, 0, 2)), CORNER_M)
-    assert (inner.sum(), outer.sum()) == (count, 0)
-
-
-def test_faces_that_turn_little_make_no_corner():
-    inner, outer = find_corner_faces(faces((0, 0, 2, 0), (2, 0, 4, 1.9)), CORNER_M)
-    assert not inner.any() and not outer.any()
-
-
-def test_faces_go_on_from_each_other_on_one_line():
-    found = faces((0, 0, 2, 0), (3, 0.05, 5, 0.05), (3, 0.2, 5, 0.2), (7, 0, 8, 0), (5, 0, 3, 0))
-    pairs = np.argwhere(find_collinear_faces(found, DOOR_M)).tolist()
-    assert pairs == [[0, 1], [1, 0]]
-    assert [0, 3] in np.argwhere(find_collinear_faces(found, 5.0)).tolist()
-
-
 def test_no_faces():
-    none = faces()
-    assert before(none) == []
-    assert [rows.shape for rows in find_corner_faces(none, 0.1)] == [(0, 2, 0)] * 2
-    assert find_collinear_faces(none, 1.0).shape == stand_in_front(none, 1.0).shape == (0, 0)
+    assert before(faces()) == []
 
 
 @given(
@@ -156,11 +115,8 @@ def test_neither_turn_nor_place_nor_order_matters(seed, angle_rad, shift_m):
     order, line = rng.permutation(8), rng.integers(0, 6, 8)
     here = faces(*ends_m.reshape(8, 4), line=line)
     there = faces(*turned(ends_m, angle_rad, shift_m)[order].reshape(8, 4), line=line[order])
-    for arranged in (
-        lambda found: stand_in_front(found, DEPTH_M),
-        lambda found: stand_before(found, np.ones(8, bool), depth_m=DEPTH_M, door_m=DOOR_M),
-        lambda found: find_collinear_faces(found, DOOR_M),
-        lambda found: find_corner_faces(found, CORNER_M)[0].any(axis=1),
-        lambda found: find_corner_faces(found, CORNER_M)[1].any(axis=1),
-    ):
-        np.testing.assert_array_equal(arranged(here)[np.ix_(order, order)], arranged(there))
+
+    def arranged(found):
+        return stand_before(found, np.ones(8, bool), depth_m=DEPTH_M, door_m=DOOR_M)
+
+    np.testing.assert_array_equal(arranged(here)[np.ix_(order, order)], arranged(there))

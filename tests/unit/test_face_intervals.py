@@ -51,10 +51,6 @@ def test_points_among_which_more_rays_go_through_are_no_wall():
     assert found(row(0, 1), 4 * row(0, 1)) == []
 
 
-def test_what_rays_look_over_is_furniture():
-    assert found(row(0, 1, z=0.7) * 5, 3 * row(0, 1, z=1.2)) == []
-
-
 def test_a_window_is_looked_over_and_the_wall_beside_it_is_not():
     np.testing.assert_allclose(found(row(0, 3) * 5, 3 * row(1, 2, z=1.5)), [(0, 3)])
 

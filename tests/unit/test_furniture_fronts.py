@@ -7,32 +7,32 @@ import pytest
 
 from helpers import toy_rooms
 from helpers.observation_making import stretch
-from scanplan.extraction.face_arrangement import Faces
-from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
 from scanplan.plan.faces import tracing
+from scanplan.plan.faces.face_arrangement import Faces
+from scanplan.plan.faces.furniture_fronts import FurnitureLimits, find_furniture_fronts
 
 LIMITS = FurnitureLimits(**toy_rooms.FURNITURE)
 NORTH = np.array([0.0, 1.0])
 TURN = np.array([[0.6, 0.8], [-0.8, 0.6]])
 
 
-def pieces(y_m, *spans_m, top_m=1.5, normal=NORTH):
-    """Return faces of one line, seen from its normal's side up to a height, over spans of x."""
+def pieces(y_m, *spans_m, normal=NORTH):
+    """Return faces of one line, seen from its normal's side, over spans of x."""
     ends = [[(x_m, y_m) for x_m in span[:: int(normal[1])]] for span in spans_m]
-    return [(end, normal, top_m) for end in ends]
+    return [(end, normal) for end in ends]
 
 
 def across(x_m, y_m, normal_x):
     """Return the face of a wall along x = x_m, over a span of y."""
-    return [([(x_m, y) for y in y_m[:: -int(normal_x)]], np.array([normal_x, 0.0]), 1.5)]
+    return [([(x_m, y) for y in y_m[:: -int(normal_x)]], np.array([normal_x, 0.0]))]
 
 
-def kept(*lines, limits=LIMITS, **more):
+def kept(*lines, limits=LIMITS):
     """Return which faces stay, by their place in the lines."""
-    ends, normal, top_m = zip(*(face for line in lines for face in line), strict=True)
+    ends, normal = zip(*(face for line in lines for face in line), strict=True)
     number = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
-    faces = Faces(np.array(ends, float), np.array(normal), np.array(top_m), number)
-    return (~find_furniture_fronts(faces, limits, **more)).tolist()
+    faces = Faces(np.array(ends, float), np.array(normal), number)
+    return (~find_furniture_fronts(faces, limits)).tolist()
 
 
 WALL = pieces(0.0, (0.0, 2.0), (4.0, 6.0))
@@ -45,7 +45,6 @@ def test_a_cabinet_before_a_wall_that_goes_on_beside_it_goes():
 @pytest.mark.parametrize(
     ("change", "why"),
     [
-        ({"top_m": 2.2}, "seen higher than furniture"),
         ({"spans": (1.5, 4.2)}, "longer than furniture"),
         ({"y_m": 1.1}, "farther before the wall than furniture"),
         ({"y_m": 0.1}, "on the wall itself"),
@@ -75,7 +74,7 @@ def test_a_front_whose_back_is_seen_before_the_wall_is_a_wall(behind_m, span_m, 
     assert kept(WALL, pieces(0.5, (2.0, 4.0)), back) == [True, True, stays, True]
     # whichever way the building is turned
     turned = [
-        [(np.array(end) @ TURN, normal @ TURN, top_m) for end, normal, top_m in line]
+        [(np.array(end) @ TURN, normal @ TURN) for end, normal in line]
         for line in (WALL, pieces(0.5, (2.0, 4.0)), back)
     ]
     assert kept(*turned) == [True, True, stays, True]
@@ -131,26 +130,15 @@ def test_a_shelf_before_a_cabinet_goes_with_it():
     ]
 
 
-def test_what_stands_before_low_things_alone_stays():
-    bench = pieces(0.0, (0.0, 2.0), top_m=0.5)
-    assert kept(bench, pieces(0.5, (2.0, 4.0))) == [True, True]
-
-
-def test_only_what_may_be_a_wall_hides_furniture():
-    cabinet = pieces(0.5, (2.0, 4.0))
-    assert kept(WALL, cabinet, is_wall=np.array([False, False, True])) == [True] * 3
-    assert kept(WALL, cabinet, is_wall=np.array([True, False, True])) == [True, True, False]
-
-
-def test_of_a_planar_survey_what_stands_before_a_wall_is_furniture_too():
+def test_in_space_it_is_not_asked():
     def seen(planar):
         drawn = [(-1, 0, 2, 0), (2, 0.5, 4, 0.5)]
         points = [(x_m, 1.5) for x_m in np.linspace(0, 2, 50)]
         return [stretch(*ends, points, planar=planar) for ends in drawn]
 
-    for planar in (False, True):
-        (wall,) = tracing._without_furniture(seen(planar=planar), LIMITS)
-        assert wall.length_m == 3
+    (wall,) = tracing._without_furniture(seen(planar=True), LIMITS)
+    assert wall.length_m == 3
+    assert len(tracing._without_furniture(seen(planar=False), LIMITS)) == 2
     assert tracing._without_furniture([], LIMITS) == []
 
 

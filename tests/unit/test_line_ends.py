@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers.plan_wall_making import wall
-from scanplan.plan.model.line_ends import end_where_seen, lengthen_walls
+from scanplan.plan.model.line_ends import end_where_seen, find_corridors, lengthen_walls
 from scanplan.plan.model.line_labels import Stretch
 
 NAN = float("nan")
@@ -33,6 +33,16 @@ class TestLengthening:
 
     def test_alone_it_stays(self):
         assert spans([wall(0, 0, 4, 0)]) == [(0, 4)]
+
+
+class TestCorridors:
+    def test_walls_that_run_on_cross_and_those_that_end_there_do_not(self):
+        """One of 0.2 m crosses at x = 1, with its corners as wide as an end may err; one ends."""
+        walls = [wall(0, 0, 4, 0), wall(1, -2, 1, 2), wall(3, 0, 3, 2)]
+        np.testing.assert_allclose(find_corridors(walls)[0], [(0.6, 1.4)])
+
+    def test_nothing_crosses_a_wall_alone(self):
+        assert find_corridors([wall(0, 0, 4, 0)])[0].shape == (0, 2)
 
 
 def stretch(kind, low_m, high_m):

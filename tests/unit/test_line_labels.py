@@ -46,8 +46,8 @@ def put(ends, along_m, heights_m, witnesses):
         ends[columns, rows, incidence, end] = n
 
 
-def label(ends, *, is_outer=False, goes_on=(False, False)):
-    return label_line(SurfaceCounts(0.0, ends), is_outer=is_outer, goes_on=goes_on)
+def label(ends, *, is_outer=False, **more):
+    return label_line(SurfaceCounts(0.0, ends), is_outer=is_outer, **more)
 
 
 def spans(stretches):
@@ -101,6 +101,17 @@ class TestByHand:
         goes_on = (False, True)
         assert spans(label(under, goes_on=goes_on)) == [("solid", 0, 3), ("door", 3, 3.9)]
         assert spans(label(free, goes_on=goes_on)) == [("solid", 0, 3), ("open", 3, 3.9)]
+
+    def test_from_one_wall_that_crosses_to_another_a_line_is_open_below_a_beam(self):
+        """A corridor of 1.6 m, and a beam across it at 2.5 m; a door has a lintel at 2.1 m."""
+        beam, door = wall(5, top_m=2.9), wall(5, top_m=2.9)
+        put(beam, (1.5, 3.1), (0, 2.5), {(OBLIQUE, BEYOND): 3})
+        put(door, (1.8, 2.7), (0, 2.1), {(OBLIQUE, BEYOND): 3})
+        crossed_m = np.array([(1.2, 1.8), (2.8, 3.4)])
+        kinds = [[s.kind for s in label(ends, crossed_m=crossed_m)] for ends in (beam, door)]
+        assert kinds == [["solid", "open", "solid"], ["solid", "door", "solid"]]
+        # elsewhere it is a way as wide under a high lintel
+        assert [s.kind for s in label(beam)] == ["solid", "door", "solid"]
 
     def test_a_slot_under_a_lintel_is_no_door(self):
         ends = wall(4)

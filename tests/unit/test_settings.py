@@ -131,7 +131,8 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
         ),
         (
             "advanced: {walls: {hang_height_m: 2.1}}",
-            "building.furniture_height_m: 2.1 must be above advanced.walls.hang_height_m (2.1)",
+            "old keys: advanced.walls.hang_height_m is gone (labels of lines and surfaces decide"
+            " now what is a wall)",
         ),
         (
             "walls: {iterative_ransac: {door_height_m: 2.0, max_planes: 9}}",

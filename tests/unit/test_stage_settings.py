@@ -15,7 +15,6 @@ from measure_crispness import measure_crispness
 from order_scans import order_scans
 from scanplan.errors import StageError
 from scanplan.extraction.extractors import EXTRACTORS
-from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.plan import planning
 from scanplan.project import stage_settings
 from scanplan.project.settings_schema import iterate_keys, list_choices
@@ -98,20 +97,6 @@ def test_every_key_reaches_a_stage(key):
     assert changed in leaves(received(with_value(key, changed)))
 
 
-@pytest.mark.parametrize(("surfaces", "by_scan"), [("rules", True), ("labels", False)])
-def test_labels_leave_it_to_all_scans_together_what_is_furniture(surfaces, by_scan):
-    settings = with_value("advanced.plan.surfaces", surfaces)
-    assert stage_settings.select_plan(settings)["furniture"]["by_scan"] is by_scan
-    for name in ("cluster_ransac", "iterative_ransac"):
-        assert stage_settings.select_extractor(settings, name)["by_scan"] is by_scan
-    made = planning.make_plan_settings(**stage_settings.select_plan(settings))
-    assert made.furniture.by_scan is by_scan
-
-
-def test_rules_decide_what_surfaces_are_unless_labels_are_asked_for():
-    assert stage_settings.select_plan(SETTINGS)["furniture"]["by_scan"]
-
-
 def test_nothing_given_is_changed():
     before = copy.deepcopy(SETTINGS)
     received(SETTINGS)
@@ -121,9 +106,8 @@ def test_nothing_given_is_changed():
 def test_the_settings_classes_take_what_is_selected():
     for name, extractor in EXTRACTORS.items():
         selected = stage_settings.select_extractor(SETTINGS, name)
-        limits = {field.name for field in fields(FurnitureLimits)}
         own = {field.name for field in fields(extractor.settings)}
-        assert set(selected) == (limits | own if extractor.drops_furniture else own)
+        assert set(selected) == (own | {"max_rmse_m"} if extractor.drops_clutter else own)
     cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
     wall_cells.WallCellSettings(**cells)
     planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
@@ -177,7 +161,6 @@ def test_a_gap_a_corner_and_a_door_are_as_wide_for_scans_and_for_the_plan():
     assert plan["merge"]["max_gap_m"] == plan["trace"]["max_gap_m"] == walls["max_gap_m"] == 0.7
     assert plan["merge"]["corner_m"] == walls["corner_m"] == 0.2
     assert plan["openings"]["max_door_m"] == plan["furniture"]["door_width_m"] == 1.2
-    assert walls["door_width_m"] == 1.2
 
 
 def test_one_seed_draws_everything_but_the_simulation():

@@ -1,18 +1,17 @@
-"""A plan with labels, of a house with a window, a door, its open leaf, and a cupboard."""
+"""A plan of a house with a window, a door, its open leaf, and a cupboard."""
 
 import numpy as np
 import pytest
 import shapely
 
 from helpers import furnished_house as house
+from helpers.house_making import PLAN
 from scanplan.plan import planning
-from scanplan.plan.model.surfaces import label_surfaces
+from scanplan.plan.model import things
+from scanplan.plan.model.surfaces import _choose_kinds, label_surfaces
 from scanplan.store import schemas
 
-
-def plan(looked, *, labels):
-    settings = house.settings(labels=labels)
-    return planning.make_plan(house.segments(), looked, house.SENSORS[:, :2], house.T_NS, settings)
+SETTINGS = planning.make_plan_settings(**PLAN)
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +21,7 @@ def looked():
 
 @pytest.fixture(scope="module")
 def made(looked):
-    return plan(looked, labels=True)
+    return planning.make_plan(house.segments(), looked, house.SENSORS[:, :2], house.T_NS, SETTINGS)
 
 
 def ends_m(table):
@@ -80,8 +79,11 @@ class TestWholePlan:
         assert len(long) == 5
         assert shapely.length(long).sum() == pytest.approx(8 + 8 + 4 + 4 + 4, abs=0.3)
 
-    def test_rules_make_no_row_of_a_leaf(self, looked):
-        assert schemas.LEAF not in plan(looked, labels=False).furniture["kind"]
+
+def test_a_building_has_a_wall_at_least():
+    p = np.array([(0.3, 0.1, 0.6, 0.0), (0.4, 0.0, 0.6, 0.0), (0.2, 0.1, 0.7, 0.0)])
+    assert _choose_kinds(p) == [things.FURNITURE, things.WALL, things.FURNITURE]
+    assert _choose_kinds(p[:0]) == []
 
 
 def test_of_no_walls_there_are_no_surfaces(looked):

@@ -7,7 +7,7 @@ from helpers import toy_rooms
 from scanplan.selection import methods, wall_cells
 from scanplan.selection.objectives import CellCoverage
 
-KNOWN = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+KNOWN = {**toy_rooms.LIMITS, "wall_height_m": 1.0}
 LIMITS = {name: KNOWN[name] for name in methods.WALL_LIMITS if name in KNOWN}
 SETTINGS = wall_cells.WallCellSettings(cell_m=0.25, reach_deg=3.5, max_tilt_deg=15.0, **LIMITS)
 # what the toy sensor sees of its room's walls, and 1.5 m of the wall behind the doorway

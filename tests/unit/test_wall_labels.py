@@ -62,6 +62,13 @@ class TestParts:
         assert window.lintel_m == pytest.approx(2.1, abs=0.15)
         assert spans_x(part.left) == [[0, 5]]
 
+    def test_what_is_open_from_one_wall_to_another_parts_it_too(self):
+        scans = scans_at(5, with_hole((1.2, 2.6)), ceiling_m=HALL_M)
+        wall, looked = paired(scans, [(0, 1.2), (2.6, 5)], length_m=5.0)
+        crossed_m = np.array([(1.0, 1.4), (2.4, 2.8)])
+        named = {"max_opening_m": MAX_OPENING_M, "crossed_m": crossed_m}
+        assert len(list(label_wall(wall, looked, NO_WAY_M, **named))) == 2
+
     @pytest.mark.parametrize(("wide_m", "n_parts"), [(1.4, 1), (2.6, 2)])
     def test_what_is_open_for_long_parts_a_wall_in_two(self, wide_m, n_parts):
         begin_m, end_m = 1.2, 1.2 + wide_m

@@ -1,15 +1,15 @@
-"""Wall segments of one scan: an extractor and the classifier of furniture, composed.
+"""Wall segments of one scan by any extractor.
 
-The extractors by name stand here and nowhere else. The thesis's own go without the classifier.
+The extractors by name stand here and nowhere else. Of the thesis's own clutter is none.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import MISSING, dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from scanplan.extraction import (
     cluster_ransac,
-    furniture,
     iterative_ransac,
     segments,
     thesis_ransac,
@@ -36,14 +36,14 @@ class Extractor:
     extract : callable
         Called with the scan's id, its points, its rays and the settings; returns rows of
         `segments.describe_run`.
-    drops_furniture : bool
-        Whether the classifier is asked which of its segments are walls.
+    drops_clutter : bool
+        Whether segments whose points scatter too much are none.
     """
 
     settings: type[ExtractorSettings]
     # the class of the last argument is that of `settings`
     extract: Callable[[int, FloatArray, RaySet | None, Any], list[Row]]
-    drops_furniture: bool = True
+    drops_clutter: bool = True
 
 
 EXTRACTORS: dict[str, Extractor] = {
@@ -56,12 +56,12 @@ EXTRACTORS: dict[str, Extractor] = {
     "thesis_cluster_ransac": Extractor(
         thesis_ransac.ThesisClusterSettings,
         thesis_ransac.extract_of_clusters,
-        drops_furniture=False,
+        drops_clutter=False,
     ),
     "thesis_iterative_ransac": Extractor(
         thesis_ransac.ThesisIterativeSettings,
         thesis_ransac.extract_repeatedly,
-        drops_furniture=False,
+        drops_clutter=False,
     ),
 }
 
@@ -75,11 +75,9 @@ def select_settings(kind: type[_Class], settings: Settings) -> _Class:
     return kind(**{name: settings[name] for name in wanted})
 
 
-def select_limits(extractor: Extractor, settings: Settings) -> furniture.FurnitureLimits | None:
-    """Return what furniture is, among more settings; None for an extractor that drops none."""
-    if not extractor.drops_furniture:
-        return None
-    return select_settings(furniture.FurnitureLimits, settings)
+def select_max_rmse_m(extractor: Extractor, settings: Settings) -> float:
+    """Return by how much points of a wall scatter at most, among more settings."""
+    return settings["max_rmse_m"] if extractor.drops_clutter else math.inf
 
 
 def find_wall_segments(
@@ -90,9 +88,9 @@ def find_wall_segments(
     planar: bool,
     extractor: Extractor,
     settings: ExtractorSettings,
-    limits: furniture.FurnitureLimits | None = None,
+    max_rmse_m: float = math.inf,
 ) -> segments.WallSegments:
-    """Extract the wall segments of one scan, without furniture.
+    """Extract the wall segments of one scan.
 
     Parameters
     ----------
@@ -106,8 +104,8 @@ def find_wall_segments(
     extractor : Extractor
     settings : ExtractorSettings
         Of the extractor's class.
-    limits : furniture.FurnitureLimits, optional
-        What furniture is; without them, it stays among the segments.
+    max_rmse_m : float, > 0
+        Segments whose points scatter more about their line are clutter.
 
     Raises
     ------
@@ -117,6 +115,4 @@ def find_wall_segments(
     points = centre_in_order(xyz_m, sensor_xyz_m)
     scan = segments.view_scan(points, planar=planar)
     rows = extractor.extract(scan_id, points, scan, settings)
-    if limits is not None:
-        rows = furniture.keep_walls(rows, scan, limits)
-    return segments.collect_segments(rows, sensor_xyz_m)
+    return segments.collect_segments(rows, sensor_xyz_m, max_rmse_m)

@@ -141,9 +141,15 @@ def describe_run(
     return (*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
 
 
-def collect_segments(rows: Sequence[Row], sensor_xyz_m: FloatArray) -> WallSegments:
-    """Make a scan's segments, map frame, most points first, of the rows of `cut_line`."""
+def collect_segments(
+    rows: Sequence[Row], sensor_xyz_m: FloatArray, max_rmse_m: float = np.inf
+) -> WallSegments:
+    """Make a scan's segments, map frame, most points first, of the rows of `cut_line`.
+
+    What scatters more than `max_rmse_m` is none.
+    """
     values = np.array(rows, float).reshape(-1, len(_FIELDS))
+    values = values[values[:, 7] <= max_rmse_m]
     values = values[np.lexsort([*values.T[3::-1], -values[:, 6]])]
     x_m, y_m, z_m = np.asarray(sensor_xyz_m, float)
     return WallSegments(

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 
 from scanplan.errors import StageError
 from scanplan.extraction import known_segments, map_tilt, segments
-from scanplan.extraction.extractors import EXTRACTORS, select_limits, select_settings
+from scanplan.extraction.extractors import EXTRACTORS, select_max_rmse_m, select_settings
 from scanplan.stage import log
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
@@ -40,8 +40,7 @@ def write_survey_walls(
     extractor : str
         A key of `EXTRACTORS`.
     settings : dict
-        Of that extractor's class of settings; of `furniture.FurnitureLimits`, too, where it drops
-        furniture.
+        Of that extractor's class of settings, and `max_rmse_m` where it drops clutter.
     scan_ids : (n,) int, increasing, optional
         Which scans; all by default.
     known : iterable of path-like
@@ -78,7 +77,7 @@ def write_survey_walls(
         planar=store.planar,
         extractor=method,
         settings=select_settings(method.settings, settings),
-        limits=select_limits(method, settings),
+        max_rmse_m=select_max_rmse_m(method, settings),
     )
     if not store.planar:
         _warn_of_tilt(stage, store, sensors)

@@ -62,7 +62,7 @@ class Opening:
     below_wall : bool
         Whether wall was seen above it, at a height that need not be known.
     kind : str
-        One of `opening_kinds.KINDS`, or `GAP`: as long as nothing else is known of it.
+        `door`, `window`, `glass`, or `GAP`: as long as nothing else is known of it.
     p_kind : float
         Probability of the likeliest kind; NaN as long as none was weighed.
     """

@@ -164,7 +164,7 @@ def opening_columns(
             known = _NOT_IN_A_WALL | {"type": kind, "n_rays": opening.n_rays}
             rows.append(known | _place_columns(ends_m, beside))
     for span in bare:
-        known = _NOT_IN_A_WALL | {"type": span.kind, "p_kind": span.p_kind, "n_rays": span.n_rays}
+        known = _NOT_IN_A_WALL | {"type": span.kind}
         rows.append(known | _place_columns(span.ends_m, (span.room, -1)))
     return columns_of_rows(
         [{"opening": number, **row} for number, row in enumerate(rows)], schemas.OPENINGS

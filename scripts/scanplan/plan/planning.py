@@ -9,16 +9,8 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.extraction.furniture import FurnitureLimits
-from scanplan.plan import (
-    half_height,
-    opening_kinds,
-    plan_tables,
-    uncertainty,
-    wall_faces,
-    wall_ground,
-    windows,
-)
+from scanplan.plan import plan_tables, uncertainty, wall_faces, wall_ground
+from scanplan.plan.faces.furniture_fronts import FurnitureLimits
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
@@ -31,7 +23,7 @@ from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
 from scanplan.plan.rooms import room_bounds
-from scanplan.plan.rooms.room import Room, rooms_beside
+from scanplan.plan.rooms.room import Room
 from scanplan.plan.rooms.room_outlines import find_rooms
 from scanplan.plan.rooms.unseen_floor import leave_out_unseen
 from scanplan.plan.uncertainty import ReviewCriteria
@@ -203,9 +195,7 @@ def make_plan(
     survey = _Survey(settings, rays, track_m, find_free, find_seen, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
-    walls = survey.decide_kinds(surfaces, spaces.rooms)
-    surfaces = replace(surfaces, walls=walls)
-    bare = survey.find_bare_spans(surfaces, spaces)
+    walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
     floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
     cut_walls = wall_faces.cut_wall_faces(
         walls,
@@ -246,7 +236,7 @@ class _Surfaces:
     ----------
     walls, glass_walls : list of PlanWall
     tops_m : list of float
-        How high each wall is, see `half_height.drop_low_surfaces`.
+        How high each wall ends, see `model.surfaces.LabelledSurfaces`.
     unpaired_m : float
         How thick a wall is taken to be of which one side was seen.
     furnished : list of shapely geometry
@@ -326,7 +316,7 @@ class _Survey:
         return free_space.union_on_grid([self.floor, self.find_seen()])
 
     def find_surfaces(self, segments: Columns) -> _Surfaces:
-        """Return walls with their openings, kinds of openings not yet decided."""
+        """Return walls with their openings."""
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
             *(candidates, self.rays, self.settings.merge, self.settings.reading),
@@ -335,21 +325,17 @@ class _Survey:
         walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
-        open_leaves_m: list[FloatArray] = []
-        if self.labels:
-            labelled = label_surfaces(
-                *(walls, self.rays, self.track_m),
-                max_opening_m=self.settings.openings.max_opening_m,
-                max_door_m=self.settings.openings.max_door_m,
-            )
-            walls, tops_m = labelled.walls, labelled.tops_m
-            open_leaves_m = labelled.leaves_m
-        else:
-            walls, tops_m = self._find_windows(walls)
-        glass_walls = room_bounds.find_glass_walls(
-            walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+        labelled = label_surfaces(
+            *(walls, self.rays, self.track_m),
+            max_opening_m=self.settings.openings.max_opening_m,
+            max_door_m=self.settings.openings.max_door_m,
         )
-        walls, tops_m = self._leave_out_columns(walls, tops_m, glass_walls, unpaired_m)
+        glass_walls = room_bounds.find_glass_walls(
+            labelled.walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+        )
+        walls, tops_m = self._leave_out_columns(
+            *(labelled.walls, labelled.tops_m, glass_walls, unpaired_m)
+        )
         return _Surfaces(
             walls=walls,
             glass_walls=glass_walls,
@@ -357,28 +343,9 @@ class _Survey:
             unpaired_m=unpaired_m,
             furnished=furnished,
             leaves=leaves,
-            open_leaves_m=open_leaves_m,
+            open_leaves_m=labelled.leaves_m,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
-        )
-
-    @property
-    def labels(self) -> bool:
-        """Whether labels decide what surfaces are."""
-        return not self.settings.furniture.by_scan
-
-    def _find_windows(self, walls: list[PlanWall]) -> tuple[list[PlanWall], list[float]]:
-        """Return walls with their windows, and how high they are, without what is as low."""
-        with_windows = windows.add_windows(
-            *(walls, self.rays),
-            min_width_m=self.settings.openings.min_opening_m,
-            band_m=self.settings.reading.band_m,
-        )
-        return half_height.drop_low_surfaces(
-            with_windows,
-            wall_height_m=self.settings.furniture.wall_height_m,
-            furniture_height_m=self.settings.furniture.furniture_height_m,
-            furniture_side_m=self.settings.furniture.furniture_depth_m,
         )
 
     def _make_walls(
@@ -499,33 +466,13 @@ class _Survey:
         )
         return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
 
-    def decide_kinds(self, surfaces: _Surfaces, rooms: list[Room]) -> list[PlanWall]:
-        """Return walls with their openings as the kinds that rays show them to be."""
-        if self.labels:
-            return surfaces.walls
-        return opening_kinds.decide_kinds(
-            *(surfaces.walls, self.rays, self.track_m, functools.partial(rooms_beside, rooms)),
-            ways_m=[leaf.way_m for leaf in surfaces.leaves],
-            min_width_m=self.settings.openings.min_opening_m,
-            max_door_m=self.settings.openings.max_door_m,
-            band_m=self.settings.reading.band_m,
-            niche_m=self.settings.furniture.furniture_depth_m,
-        )
-
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
-        """Return the spans of rooms' outlines where nothing is drawn, and what each is."""
-        areas = [room.polygon for room in spaces.rooms]
-        bare = wall_ground.find_bare_spans(
-            *(areas, [*surfaces.bounds, *spaces.partings], self.floor),
+        """Return the spans of rooms' outlines where nothing is drawn."""
+        return wall_ground.find_bare_spans(
+            [room.polygon for room in spaces.rooms],
+            *([*surfaces.bounds, *spaces.partings], self.floor),
             unpaired_m=surfaces.unpaired_m,
             min_length_m=self.settings.openings.min_opening_m,
-        )
-        if self.labels:
-            return bare
-        return opening_kinds.decide_bare_spans(
-            *(bare, self.rays, self.track_m, areas),
-            max_width_m=self.settings.openings.max_opening_m,
-            band_m=self.settings.reading.band_m,
         )
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:

@@ -30,17 +30,11 @@ class BareSpan:
     kind : str
         `UNSEEN`, or `GAP` where the floor was seen to go on: open, by what it leads through is not
         known.
-    p_kind : float
-        How probable that is, where rays decided it; else NaN.
-    n_rays : int
-        That went through.
     """
 
     ends_m: FloatArray
     room: int
     kind: str
-    p_kind: float = np.nan
-    n_rays: int = 0
 
 
 def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:

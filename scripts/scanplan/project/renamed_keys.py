@@ -22,13 +22,8 @@ _OF_BOTH_EXTRACTORS = {
         key: f"advanced.walls.{key}"
         for key in (
             "max_rmse_m",
-            "hang_height_m",
-            "over_share",
-            "through_share",
-            "missing_share",
             "furniture_depth_m",
             "furniture_length_m",
-            "stub_length_m",
             "corner_m",
         )
     },
@@ -60,7 +55,20 @@ RENAMED = {
 }
 """Old key to the new one; beside these, a key that is known below `advanced` has moved there."""
 
+_LABELS = "labels of lines and surfaces decide now what is a wall"
 DROPPED = {
+    "advanced.plan.surfaces": _LABELS,
+    **{
+        f"{section}.{key}": _LABELS
+        for section in ("advanced.walls", "walls", *(f"walls.{name}" for name in _EXTRACTORS))
+        for key in (
+            "hang_height_m",
+            "over_share",
+            "through_share",
+            "missing_share",
+            "stub_length_m",
+        )
+    },
     "plan.right_angles": "faces are drawn as turned as their points are",
     "plan.pair.max_angle_deg": "it is always 5 degrees",
 }

@@ -20,21 +20,8 @@ Keywords = dict[str, Any]
 
 _PLAN_BELOW_DOOR_M = 0.1  # less: walls above doors close ways through; more: low openings are lost
 _PAIR_MAX_ANGLE_DEG = 5.0  # more pairs what merely lies side by side, less parts short walls' sides
-_FURNITURE = (
-    "max_rmse_m",
-    "wall_height_m",
-    "furniture_height_m",
-    "hang_height_m",
-    "over_share",
-    "through_share",
-    "missing_share",
-    "furniture_depth_m",
-    "furniture_length_m",
-    "stub_length_m",
-    "door_width_m",
-    "corner_m",
-    "by_scan",
-)
+_OF_THE_PLAN = ("furniture_depth_m", "furniture_length_m")
+"""Of the keys below `walls`, what no extractor asks."""
 _THESIS_RANSAC = (
     "inlier_m",
     "min_points",
@@ -117,9 +104,10 @@ def select_visibility(settings: Settings) -> Keywords:
 
 def select_wall_cells(settings: Settings, limits: Iterable[str]) -> Keywords:
     """Return what makes returns a wall: limits of the thesis's extractor, and the cells' size."""
-    extractor = select_extractor(settings, "cluster_ransac")
+    known = select_extractor(settings, "cluster_ransac")
+    known |= {"wall_height_m": settings["building"]["wall_height_m"]}
     own = select_section(settings, "selection", "wall_length")
-    return {name: extractor[name] for name in limits} | own
+    return {name: known[name] for name in limits} | own
 
 
 def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
@@ -133,16 +121,12 @@ def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
 def select_extractor(settings: Settings, extractor: str) -> Keywords:
     """Return the keywords of an extractor's settings: shared ones, the building's, its own."""
     walls, building = select_section(settings, "walls"), settings["building"]
-    shared = {key: value for key, value in walls.items() if not isinstance(value, dict)}
-    measures = {
-        "door_height_m": building["door_height_m"],
-        "door_width_m": building["max_door_m"],
-        "wall_height_m": building["wall_height_m"],
-        "furniture_height_m": building["furniture_height_m"],
-        "seed": settings["seed"],
-        "by_scan": select_section(settings, "plan")["surfaces"] == "rules",
+    shared = {
+        key: value
+        for key, value in walls.items()
+        if not isinstance(value, dict) and key not in _OF_THE_PLAN
     }
-    known = shared | measures
+    known = shared | {"door_height_m": building["door_height_m"], "seed": settings["seed"]}
     if extractor not in _THESIS:
         return known | walls[extractor]
     known |= walls["cluster_ransac"] | walls["thesis_ransac"]
@@ -155,21 +139,22 @@ def select_extractors(settings: Settings, extractors: Iterable[str]) -> dict[str
 
 
 def select_plan(settings: Settings) -> Keywords:
-    """Return the keywords of `planning.make_plan_settings`, part by part.
-
-    What is furniture in single scans is furniture in the plan.
-    """
+    """Return the keywords of `planning.make_plan_settings`, part by part."""
     plan, building = select_section(settings, "plan"), settings["building"]
     walls = select_section(settings, "walls")
     gap = {"max_gap_m": walls["max_gap_m"]}
     low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
     thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
-    extractor = select_extractor(settings, "cluster_ransac")
+    furniture = {key: walls[key] for key in _OF_THE_PLAN}
+    furniture |= {
+        "furniture_height_m": building["furniture_height_m"],
+        "door_width_m": building["max_door_m"],
+    }
     return {
         "merge": plan["merge"] | gap | {"corner_m": walls["corner_m"]},
         "trace": plan["trace"] | gap | low,
         "ranges": plan["ranges"],
-        "furniture": {name: extractor[name] for name in _FURNITURE},
+        "furniture": furniture,
         "pair": plan["pair"] | thickness | {"max_angle_deg": _PAIR_MAX_ANGLE_DEG},
         "openings": plan["openings"] | {"max_door_m": building["max_door_m"]},
         "rooms": plan["rooms"],

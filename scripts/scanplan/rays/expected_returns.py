@@ -93,14 +93,6 @@ class SentRays:
     least_rays: float = _LEAST_RAYS
     lone_rays: float = np.inf
 
-    @property
-    def missing_share(self) -> FloatArray:
-        """Share (v,) of the returns expected of each view that are nowhere; 0 where none is."""
-        expected = self.expected.sum(axis=1)
-        returned = self.occluded.sum(axis=1) + self.returned.sum(axis=1)
-        share = np.divide(returned, expected, out=np.ones(len(expected)), where=expected > 0)
-        return np.maximum(0.0, 1 - share)
-
     def reached(self, *, least_scans: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return how many rays reached the columns (n,) of one surface and those around each.
 

@@ -29,9 +29,7 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """What single scans see of single lines.
-
-    One for each of many scans that look at a line, or for each of many lines that a scan looks at.
+    """What single scans see of a line, one for each of many scans.
 
     Attributes
     ----------
@@ -157,47 +155,6 @@ def cast_at_face(
     normal = np.broadcast_to(line.normal, (len(sensors_m), 2))
     views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, normal, least_side_m)
     return _meet(rays, views, view, *ends_m, at_m)
-
-
-def cast_at_faces(
-    rays: RaySet, ends_m: FloatArray, normal: FloatArray, *, at_m: float, least_side_m: float
-) -> FaceRays:
-    """Gather the rays that one scan sent at each of several faces, as `cast_at_face` does of one.
-
-    Parameters
-    ----------
-    rays : ray_set.RaySet
-        Of one scan.
-    ends_m : (v, 2, 2) float
-        Start and end of each face, its normal on the left of the way.
-    normal : (v, 2) float
-    at_m, least_side_m : float
-        As for `cast_at_face`.
-
-    Returns
-    -------
-    FaceRays
-        With a view of each face; places along its line are counted from its start.
-    """
-    sensor_m = rays.sensors_m[0, :2]
-    direction = np.column_stack([normal[:, 1], -normal[:, 0]])
-    from_start_m = sensor_m - ends_m[:, 0]
-    views = Views(
-        scan=np.zeros(len(normal), np.int64),
-        sensor_along_m=(from_start_m * direction).sum(axis=1),
-        side_m=(from_start_m * normal).sum(axis=1),
-        normal=normal,
-        least_side_m=least_side_m,
-    )
-    seen = np.flatnonzero(np.abs(views.side_m) >= least_side_m)
-    low, high = rays.rows_between(ends_m[seen].swapaxes(0, 1), views.scan[seen])
-    xyz_m, view = rays.gather_rows(low, high, seen)
-    way_m = xyz_m[:, :2] - sensor_m
-    end_along_m, end_offset_m = (
-        from_m.take(view) + np.einsum("ij,ij->i", way_m, axis.take(view, axis=0))
-        for from_m, axis in ((views.sensor_along_m, direction), (views.side_m, normal))
-    )
-    return _meet(rays, views, view, end_along_m, end_offset_m, xyz_m[:, 2], at_m)
 
 
 def _meet(

@@ -31,7 +31,7 @@ def run(project: Path, data: Path, folder: Path, revision: str, words: Sequence[
         Any name that git knows the commit by.
     words : sequence of str
         See `floors.choose_floors`; words with an equals sign are settings that all plans are made
-        with, as `advanced.plan.surfaces=labels`.
+        with, as `plan.merge.min_scans=3`.
     """
     folder.mkdir(parents=True, exist_ok=True)
     settings = [word for word in words if "=" in word]

@@ -48,7 +48,7 @@ def make_plans(
         Gets `code/`, a checkout with its results; a second call reruns what changed in between.
     recorded : dict of str to recordings.Recorded
     settings : sequence of str
-        As `advanced.plan.surfaces=labels`, for all floors.
+        As `plan.merge.min_scans=3`, for all floors.
 
     Returns
     -------

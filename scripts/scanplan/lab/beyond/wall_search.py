@@ -8,7 +8,6 @@ import numpy as np
 
 from scanplan.extraction import extractors, segments
 from scanplan.extraction.cluster_ransac import ClusterRansacSettings
-from scanplan.extraction.furniture import FurnitureLimits
 from scanplan.lab.evaluation import first_ranks
 from scanplan.lab.evaluation.survey_findings import SurveyTruth
 from scanplan.lab.evaluation.wall_findings import Findings
@@ -20,18 +19,18 @@ _EXTRACTOR = extractors.EXTRACTORS["cluster_ransac"]
 
 @dataclass(frozen=True)
 class WallSearch:
-    """Cluster RANSAC and the classifier of furniture, with their settings.
+    """Cluster RANSAC, with its settings.
 
     Attributes
     ----------
     settings : cluster_ransac.ClusterRansacSettings
-    limits : furniture.FurnitureLimits
+    max_rmse_m : float
     planar : bool
         Whether the sensor measures in one plane only.
     """
 
     settings: ClusterRansacSettings
-    limits: FurnitureLimits
+    max_rmse_m: float
     planar: bool
 
     def change(self, **changed: Any) -> "WallSearch":
@@ -49,7 +48,7 @@ class WallSearch:
             planar=self.planar,
             extractor=_EXTRACTOR,
             settings=self.settings,
-            limits=self.limits,
+            max_rmse_m=self.max_rmse_m,
         )
 
     def find_all(
@@ -69,8 +68,7 @@ class WallSearch:
 def make_wall_search(settings: Settings, *, planar: bool) -> WallSearch:
     """Return the search with the settings that `stage_settings.select_extractor` selects."""
     own = extractors.select_settings(ClusterRansacSettings, settings)
-    limits = extractors.select_settings(FurnitureLimits, settings)
-    return WallSearch(own, limits, planar)
+    return WallSearch(own, extractors.select_max_rmse_m(_EXTRACTOR, settings), planar)
 
 
 def measure_walls(survey: SurveyTruth, findings: Findings, rows: IntArray) -> dict[str, Any]:

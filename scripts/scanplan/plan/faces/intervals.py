@@ -163,14 +163,12 @@ def find_face_intervals(
     door_height_m: float,
     max_gap_m: float,
     foreign_m: Sequence[tuple[float, float]] = (),
-    keep_low: bool = False,
 ) -> list[FaceInterval]:
     """Find what is wall along a line.
 
     Columns with points, joined over gaps that no ray went through.
 
-    Glass is no wall; intervals that rays pass over along most of their length are furniture, and
-    left out.
+    Glass is no wall, nor is what planar scans look through along most of its length.
 
     Parameters
     ----------
@@ -179,8 +177,6 @@ def find_face_intervals(
         What is higher says nothing about a way through.
     max_gap_m : float, >= 0
         Longest gap that is wall all the same where no ray went through.
-    keep_low : bool
-        Whether what rays of scans in space pass over is kept, too.
     foreign_m : sequence of (float, float)
         From where to where other faces cross the line: points there are owned by these, so no
         interval begins or ends there.
@@ -200,7 +196,7 @@ def find_face_intervals(
     intervals = []
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
         overlooked = is_overlooked[first : last + 1]
-        if (keep_low and not seen.planar) or overlooked.sum() < (~overlooked).sum():
+        if not seen.planar or overlooked.sum() < (~overlooked).sum():
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
             intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))

@@ -10,12 +10,12 @@ from functools import partial
 import numpy as np
 import shapely
 
-from scanplan.extraction.face_arrangement import Faces
-from scanplan.extraction.furniture import FurnitureLimits, find_furniture_fronts
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
+from scanplan.plan.faces.face_arrangement import Faces
 from scanplan.plan.faces.face_tree import FaceTree
+from scanplan.plan.faces.furniture_fronts import FurnitureLimits, find_furniture_fronts
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.plan.faces.owned_points import owned_intervals
@@ -98,7 +98,6 @@ def trace_faces(
         intervals.find_face_intervals,
         door_height_m=reading.door_height_m,
         max_gap_m=reading.max_gap_m,
-        keep_low=not furniture.by_scan,
     )
     observations = _observe_lines(face_candidates, rays, reading)
     owners = selection.select_walls(find_intervals(seen) for seen in observations)
@@ -159,8 +158,7 @@ class _FaceSelection:
         )
         supported = [interval for of_line in dense for interval in self._supported(of_line, found)]
         single = self.merging.remove_doubles(supported)
-        is_decided_later = not self.furniture.by_scan and single and not single[0].seen.planar
-        return single if is_decided_later else _without_furniture(single, self.furniture)
+        return _without_furniture(single, self.furniture)
 
     def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
         """Return intervals without overshoots, tails and stubs."""
@@ -220,26 +218,19 @@ def _without_furniture(
 ) -> list[FaceInterval]:
     """Return the intervals that are no fronts of furniture.
 
-    From where furniture hides the wall behind it, and no ray passes over it, it looks like a wall
-    to a scan; all scans together show the wall behind.
+    Of scans in space labels decide what is (`plan.model`).
     """
-    if not found:
-        return []
+    if not found or not found[0].seen.planar:
+        return list(found)
     observations = {id(interval.seen): None for interval in found}
     numbers = {key: number for number, key in enumerate(observations)}
     faces = Faces(
         ends_m=np.array([interval.ends for interval in found]),
         normal=np.array([interval.line.normal for interval in found]),
-        top_m=np.array([_top_m(interval, limits) for interval in found]),
         line=np.array([numbers[id(interval.seen)] for interval in found]),
     )
     fronts = find_furniture_fronts(faces, limits).tolist()
     return [interval for interval, is_front in zip(found, fronts, strict=True) if not is_front]
-
-
-def _top_m(interval: FaceInterval, limits: FurnitureLimits) -> float:
-    """Return how high a face is seen; of a 2-D scanner what may be furniture, and may be a wall."""
-    return limits.wall_height_m if interval.seen.planar else interval.top_m
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:

@@ -9,6 +9,7 @@ from scanplan.geometry import intersections
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M
+from scanplan.types import FloatArray
 
 _WAYS = ("door", "shut", "glass")
 
@@ -24,6 +25,12 @@ def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
     """
     spans = intersections.stack_spans(walls)
     return [_lengthen(number, walls, spans, most_m) for number in range(len(walls))]
+
+
+def find_corridors(walls: Sequence[PlanWall]) -> list[FloatArray]:
+    """Return from where to where others that run on cross each wall, (n, 2), with their corners."""
+    spans = intersections.stack_spans(walls)
+    return [_find_crossed(wall, walls, spans) for wall in walls]
 
 
 def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) -> list[Stretch]:
@@ -44,6 +51,20 @@ def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) ->
 
 def _middle_m(stretch: Stretch) -> float:
     return (stretch.low_m + stretch.high_m) / 2
+
+
+def _find_crossed(
+    wall: PlanWall, walls: Sequence[PlanWall], spans: intersections.SpanArrays
+) -> FloatArray:
+    found = wall.find_crossings(spans)
+    crossed_m = []
+    for row, place_m, sine in zip(found.which, found.place_m, found.sine, strict=True):
+        other = walls[row]
+        at_m = float(other.line.along_m(wall.line.at(place_m)))
+        if min(at_m - other.low_m, other.high_m - at_m) > wall.half_m + CORNER_M:
+            reach_m = other.half_m / sine + CORNER_M
+            crossed_m.append((place_m - reach_m, place_m + reach_m))
+    return np.array(crossed_m).reshape(-1, 2)
 
 
 def _lengthen(

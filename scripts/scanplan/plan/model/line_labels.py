@@ -14,8 +14,9 @@ import numpy as np
 
 from scanplan.plan.model import priors
 from scanplan.plan.model.surface_counts import COLUMN_M, SurfaceCounts
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
+NOWHERE_M = np.empty((0, 2))
 _N_KINDS = len(priors.KINDS)
 _Reduction = Callable[..., FloatArray]
 
@@ -50,7 +51,11 @@ class Stretch:
 
 
 def label_line(
-    counts: SurfaceCounts, *, is_outer: bool, goes_on: tuple[bool, bool] = (False, False)
+    counts: SurfaceCounts,
+    *,
+    is_outer: bool,
+    goes_on: tuple[bool, bool] = (False, False),
+    crossed_m: FloatArray = NOWHERE_M,
 ) -> list[Stretch]:
     """Return the most probable stretches of a line, in order.
 
@@ -61,10 +66,13 @@ def label_line(
         Whether one side of it was seen alone: it may be a facade.
     goes_on : (bool, bool)
         Whether it begins, and ends, beyond what was seen of it, at the next wall.
+    crossed_m : (n, 2) float64, optional
+        From where to where other walls cross it.
     """
     labels = priors.list_labels(counts.ends.shape[1])
     likely = weigh_columns(counts, labels)
-    chain = _Chain(labels, likely, is_outer=is_outer, goes_on=goes_on)
+    crossed = (crossed_m - counts.first_m) / COLUMN_M
+    chain = _Chain(labels, likely, is_outer=is_outer, goes_on=goes_on, crossed=crossed)
     shares = chain.kind_shares()
     stretches = []
     for begin, end, label in chain.best_path():
@@ -82,6 +90,12 @@ def label_line(
             )
         )
     return stretches
+
+
+def is_between(places: FloatArray | IntArray, spans: FloatArray) -> BoolArray:
+    """Return which places (k,) are in any of spans (n, 2)."""
+    inside = (places[:, None] >= spans[:, 0]) & (places[:, None] <= spans[:, 1])
+    return np.asarray(inside.any(axis=1))
 
 
 def weigh_columns(counts: SurfaceCounts, labels: priors.Labels) -> FloatArray:
@@ -108,6 +122,7 @@ class _Chain:
         *,
         is_outer: bool,
         goes_on: tuple[bool, bool],
+        crossed: FloatArray = NOWHERE_M,
     ):
         self.cuts = _find_cuts(likely)
         self._labels = labels
@@ -119,6 +134,7 @@ class _Chain:
         self._n = len(self.cuts) - 1
         self._rows = [np.flatnonzero(labels.kind == kind) for kind in range(_N_KINDS)]
         of_length = priors.log_lengths(int(self.cuts[-1]))
+        self._is_crossed = is_between(self.cuts, crossed)
         # of each end, the score of every kind from every begin, (b, k)
         self._inner = [self._score_kinds(end, of_length) for end in range(1, self._n + 1)]
 
@@ -129,7 +145,9 @@ class _Chain:
         for kind, rows in enumerate(self._rows):
             if len(rows):
                 inner[:, kind] = np.logaddexp.reduce(of_label[:, rows], axis=1)
-        return inner + of_length[:, length - 1].T
+        is_between_walls = self._is_crossed[:end] & self._is_crossed[end]
+        between = np.where(is_between_walls[:, None], priors.log_between_walls(), 0.0)
+        return inner + of_length[:, length - 1].T + between
 
     def _forward(self, add: _Reduction) -> tuple[FloatArray, FloatArray]:
         """Return what enters each kind at each cut, and what ended in each there, (b, k)."""

@@ -15,8 +15,8 @@ KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
 """What a stretch is: wall; a wall that ends below the ceiling; nothing; a pane down to the floor; a
 way under a lintel; a hole or pane above a sill; a shut leaf behind the face, under a lintel."""
 SOLID, LOW, OPEN, GLASS, DOOR, WINDOW, SHUT = range(len(KINDS))
-_WALL, _FREE, _RECESS, _PANE, _OVER = range(5)
-_BEHIND = (_OVER, _FREE)
+_WALL, _OUT, _RECESS, _PANE, _IN = range(5)
+_BEHIND = (_IN, _OUT)  # where rays through an opening, or over a low thing, may lead
 _ENDS = np.array(
     (
         ((0.89, 0.02, 0.01, 0.02, 0.06), (0.87, 0.03, 0.01, 0.02, 0.07)),
@@ -26,10 +26,10 @@ _ENDS = np.array(
         ((0.03, 0.06, 0.20, 0.65, 0.06), (0.03, 0.06, 0.20, 0.65, 0.06)),
     )
 )
-# of a wall, a hole, a recess, a pane and what is over a low thing, of rays that come square and
-# others: how many end at the face, a little behind, in the wall's depth, beyond, nowhere. A pane
-# answers square rays alone (Foster, Sun, Park and Kuipers 2013, VisAGGE); what passes it is lost as
-# often as through a hole; over a low thing rays end at the next wall of the room
+# of a wall, a way out of the building, a recess, a pane and a way to the next wall, of rays that
+# come square and others: how many end at the face, a little behind, in the wall's depth, beyond,
+# nowhere. A pane answers square rays alone (Foster, Sun, Park and Kuipers 2013, VisAGGE); what
+# passes it is lost as often as on the way out
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
 _WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
 _LOW_M, _GLASS_M, _LINTEL_M = (0.5, 2.3), (1.9, 2.7), (1.9, 2.7)
@@ -42,8 +42,8 @@ _LEAST_M = {GLASS: 0.4, WINDOW: 0.4, DOOR: 0.5, SHUT: 0.5}
 _LEAF_M = (0.9, 0.1)  # usual width of a door of one leaf (DIN 18101: 0.75 to 1.0), its deviation
 _SASH_M = (1.2, 0.3)  # usual width of a window, and the deviation of its logarithm
 _FROM_SOLID = {
-    False: {DOOR: 0.74, WINDOW: 0.08, SHUT: 0.1, OPEN: 0.06, GLASS: 0.01, LOW: 0.01},
-    True: {DOOR: 0.14, WINDOW: 0.69, SHUT: 0.06, OPEN: 0.08, GLASS: 0.02, LOW: 0.01},
+    False: {DOOR: 0.73, WINDOW: 0.08, SHUT: 0.1, OPEN: 0.06, GLASS: 0.01, LOW: 0.02},
+    True: {DOOR: 0.14, WINDOW: 0.65, SHUT: 0.06, OPEN: 0.08, GLASS: 0.02, LOW: 0.05},
 }
 """What interrupts a wall that was seen from both sides, and one that may be a facade."""
 _FROM_OTHERS: dict[int, dict[int, float]] = {
@@ -55,12 +55,15 @@ _FROM_OTHERS: dict[int, dict[int, float]] = {
     SHUT: {SOLID: 1.0},
 }
 _AT_ENDS = {
-    False: {SOLID: 0.74, LOW: 0.03, OPEN: 0.1, GLASS: 0.03, DOOR: 0.07, SHUT: 0.02, WINDOW: 0.01},
-    True: {SOLID: 0.76, LOW: 0.06, OPEN: 0.08, GLASS: 0.03, DOOR: 0.03, SHUT: 0.01, WINDOW: 0.03},
+    False: {SOLID: 0.735, LOW: 0.04, OPEN: 0.1, GLASS: 0.03, DOOR: 0.07, SHUT: 0.02, WINDOW: 0.005},
+    True: {SOLID: 0.74, LOW: 0.1, OPEN: 0.08, GLASS: 0.03, DOOR: 0.03, SHUT: 0.01, WINDOW: 0.01},
 }
 _AT_NEXT = {OPEN: 0.75, SOLID: 0.2, GLASS: 0.03, DOOR: 0.01, SHUT: 0.01}
 """Likewise where none of its faces was seen up to the next wall: nearly always nothing is there; a
 lintel, or in the plane the usual width of a door, says otherwise."""
+_BETWEEN_WALLS = {OPEN: 20.0, DOOR: 0.2}
+"""How many times as likely as elsewhere from one wall to another that cross a line: a corridor."""
+_BEAM_M, _BEAM = (2.1, 2.9), 0.1  # what is open ends below a beam so high above the floor so often
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +77,7 @@ class Labels:
     sill_m, lintel_m : (l,) float64
         Between which heights above the floor it is what it is; NaN: from the floor, to any height.
     states : (l, r, 5) float64
-        1 for the state of each row of height: wall, free, recess, pane, or over a low thing.
+        1 for the state of each row of height: wall, way out, recess, pane, or way to the next wall.
     log_prior : (l,) float64
         Of its heights, given its kind.
     """
@@ -99,44 +102,45 @@ def weigh_states(ends: FloatArray) -> FloatArray:
 
 def list_labels(n_rows: int) -> Labels:
     """Return the labels of a line whose heights are in so many rows."""
-    if n_rows == 1:
-        spans = [
-            *((SOLID, 0, 1, _WALL, _WALL), (OPEN, 0, 1, _FREE, _WALL)),
-            *((GLASS, 0, 1, _PANE, _WALL), (DOOR, 0, 1, _FREE, _WALL)),
-            (SHUT, 0, 1, _RECESS, _WALL),
-        ]
-    else:
-        spans = _list_spans(n_rows)
+    spans = _list_spans_in_space(n_rows) if n_rows > 1 else _list_spans_in_plane()
     kind, low, high, state, around = np.array(spans).T
     row = np.arange(n_rows)
     is_within = (row >= low[:, None]) & (row < high[:, None])
     state_of_row = np.where(is_within, state[:, None], around[:, None])
-    count = np.bincount(kind, minlength=len(KINDS))
+    is_beam = (kind == OPEN) & (high < n_rows)
+    share = np.where(is_beam, _BEAM, 1 - _BEAM * ((kind == OPEN) & is_beam.any()))
+    group = 2 * kind + is_beam  # labels of a group are equally likely
     edges_m = ROWS_M if n_rows > 1 else np.full(2, np.nan)
     return Labels(
         kind=kind,
         sill_m=np.where(low > 0, edges_m[np.minimum(low, len(edges_m) - 1)], np.nan),
         lintel_m=np.where(high < n_rows, edges_m[np.minimum(high, len(edges_m) - 1)], np.nan),
         states=(state_of_row[:, :, None] == np.arange(len(_ENDS))).astype(float),
-        log_prior=-np.log(count[kind]),
+        log_prior=np.log(share / np.bincount(group)[group]),
     )
 
 
-def _list_spans(n_rows: int) -> list[tuple[int, int, int, int, int]]:
-    """Return kind, first row, row behind the last, state, and that of other rows, in space."""
-    spans = [
-        *((SOLID, 0, n_rows, _WALL, _WALL), (OPEN, 0, n_rows, _FREE, _WALL)),
-        (GLASS, 0, n_rows, _PANE, _WALL),
-    ]
-    # behind a low thing is a wall of the room, or a way out of it, as a window
-    spans += [(LOW, 0, top, _WALL, over) for top in _rows_between(_LOW_M) for over in _BEHIND]
+def _list_spans_in_plane() -> list[tuple[int, int, int, int, int]]:
+    """Return kind, first row, row behind the last, state, and that of other rows."""
+    closed = [(SOLID, _WALL), (GLASS, _PANE), (SHUT, _RECESS)]
+    ways = [(kind, behind) for kind in (OPEN, DOOR) for behind in _BEHIND]
+    return [(kind, 0, 1, state, _WALL) for kind, state in closed + ways]
+
+
+def _list_spans_in_space(n_rows: int) -> list[tuple[int, int, int, int, int]]:
+    """Return kind, first row, row behind the last, state, and that of other rows."""
+    spans = [(SOLID, 0, n_rows, _WALL, _WALL), (GLASS, 0, n_rows, _PANE, _WALL)]
     spans += [(GLASS, 0, top, _PANE, _WALL) for top in _rows_between(_GLASS_M)]
-    for top in _rows_between(_LINTEL_M):
-        spans += [(DOOR, 0, top, _FREE, _WALL), (SHUT, 0, top, _RECESS, _WALL)]
+    spans += [(SHUT, 0, top, _RECESS, _WALL) for top in _rows_between(_LINTEL_M)]
+    for behind in _BEHIND:
+        spans.append((OPEN, 0, n_rows, behind, _WALL))
+        spans += [(OPEN, 0, top, behind, _WALL) for top in _rows_between(_BEAM_M)]
+        spans += [(LOW, 0, top, _WALL, behind) for top in _rows_between(_LOW_M)]
+        spans += [(DOOR, 0, top, behind, _WALL) for top in _rows_between(_LINTEL_M)]
     for sill in _rows_between(_SILL_M):
         for top in _rows_between(_WINDOW_TOP_M):
             if top - sill >= _LEAST_WINDOW:
-                spans += [(WINDOW, sill, top, of, _WALL) for of in (_FREE, _PANE)]
+                spans += [(WINDOW, sill, top, of, _WALL) for of in (*_BEHIND, _PANE)]
     return spans
 
 
@@ -175,6 +179,11 @@ def log_ends(*, is_outer: bool, goes_on: bool) -> FloatArray:
     beyond what was seen of it, to the next wall, it is open.
     """
     return _log_shares(_AT_NEXT if goes_on else _AT_ENDS[is_outer])
+
+
+def log_between_walls() -> FloatArray:
+    """Return (k,): how much likelier each kind is from one wall that crosses to another, log."""
+    return np.log([_BETWEEN_WALLS.get(kind, 1.0) for kind in range(len(KINDS))])
 
 
 def _normal(x: FloatArray, mean: float, sigma: float) -> FloatArray:

@@ -1,7 +1,7 @@
 """The surfaces of a plan by the model: walls with what their lines' labels show, and leaves."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from scanplan.plan.model import glass_views, line_ends, things, wall_labels
@@ -58,26 +58,50 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = things.weigh_things(found).argmax(axis=1).tolist()
+    kinds = _choose_kinds(things.weigh_things(found))
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
-    longer = line_ends.lengthen_walls([wall for wall, _ in kept], max_door_m)
-    kept = [
-        part
-        for (wall, top_m), whole in zip(kept, longer, strict=True)
-        for part in (
-            [(wall, top_m)]
-            if whole.length_m == wall.length_m or not math.isnan(top_m)
-            else wall_labels.label_wall(
-                wall, rays, track_m, max_opening_m=max_opening_m, longer=whole
-            )
-        )
-    ]
+    kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end
         tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
         leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
     )
+
+
+def _choose_kinds(p: FloatArray) -> list[int]:
+    """Return the likeliest kinds (n,) given their probabilities (n, 4), if one at least is a wall.
+
+    A building has walls.
+    """
+    kinds = p.argmax(axis=1)
+    if len(kinds) and not (kinds == things.WALL).any():
+        kinds[p[:, things.WALL].argmax()] = things.WALL
+    return kinds.tolist()
+
+
+def _label_among(
+    parts: Sequence[tuple[PlanWall, float]],
+    rays: RaySet,
+    track_m: FloatArray,
+    max_opening_m: float,
+    max_door_m: float,
+) -> Iterator[tuple[PlanWall, float]]:
+    """Yield walls and their tops, those labelled anew that others are ahead of or cross."""
+    walls = [wall for wall, _ in parts]
+    longer = line_ends.lengthen_walls(walls, max_door_m)
+    crossed = line_ends.find_corridors(walls)
+    for (wall, top_m), whole, crossed_m in zip(parts, longer, crossed, strict=True):
+        is_open = len(crossed_m) > 1 and wall.openings
+        if math.isnan(top_m) and (whole.length_m > wall.length_m or is_open):
+            yield from wall_labels.label_wall(
+                *(wall, rays, track_m),
+                max_opening_m=max_opening_m,
+                longer=whole,
+                crossed_m=crossed_m,
+            )
+        else:
+            yield wall, top_m
 
 
 def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:

@@ -36,6 +36,7 @@ def label_wall(
     *,
     max_opening_m: float,
     longer: PlanWall | None = None,
+    crossed_m: FloatArray = line_labels.NOWHERE_M,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -50,14 +51,18 @@ def label_wall(
         What is open for longer parts a wall in two.
     longer : plan_wall.PlanWall, optional
         The same as far as it may go on, see `line_ends.lengthen_walls`.
+    crossed_m : (n, 2) float64, optional
+        From where to where other walls cross it: what is open from one to another parts it, too.
     """
     whole = longer or wall
     counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, track_m)
     goes_on = (whole.low_m < wall.low_m, whole.high_m > wall.high_m)
-    stretches = line_labels.label_line(counts, is_outer=not wall.right, goes_on=goes_on)
+    stretches = line_labels.label_line(
+        counts, is_outer=not wall.right, goes_on=goes_on, crossed_m=crossed_m
+    )
     stretches[-1] = replace(stretches[-1], high_m=whole.high_m)
     stretches = line_ends.end_where_seen(stretches, wall.low_m, wall.high_m)
-    for run in _part_runs(stretches, max_opening_m):
+    for run in _part_runs(stretches, max_opening_m, crossed_m):
         part = _clip_wall(wall, run[0].low_m, run[-1].high_m)
         if part.members and part.length_m >= END_M:
             top_m = run[0].lintel_m if run[0].kind == "low" else np.nan
@@ -79,11 +84,19 @@ def _list_sides(wall: PlanWall) -> Iterator[Side]:
             yield Side(seen.line, deep_m, np.array(asked_m))
 
 
-def _part_runs(stretches: Sequence[Stretch], max_opening_m: float) -> Iterator[list[Stretch]]:
-    """Yield what is one wall: parted at what ends low, and where it is open for long."""
+def _part_runs(
+    stretches: Sequence[Stretch], max_opening_m: float, crossed_m: FloatArray
+) -> Iterator[list[Stretch]]:
+    """Yield what is one wall: parted at what ends low, and where it is open for long.
+
+    Or open from one wall that crosses it to another.
+    """
     run: list[Stretch] = []
     for stretch in stretches:
-        is_apart = stretch.kind == "open" and (stretch.length_m > max_opening_m or not run)
+        ends_m = np.array([stretch.low_m, stretch.high_m])
+        is_corridor = line_labels.is_between(ends_m, crossed_m).all()
+        is_long = stretch.length_m > max_opening_m
+        is_apart = stretch.kind == "open" and (is_long or is_corridor or not run)
         if not is_apart and stretch.kind != "low":
             run.append(stretch)
             continue

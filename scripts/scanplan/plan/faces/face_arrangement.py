@@ -1,4 +1,4 @@
-"""How faces lie to each other: in front, across at a corner, or on one line."""
+"""How faces lie to each other: before one another, and back to back."""
 
 import math
 from dataclasses import dataclass
@@ -6,8 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from scanplan.extraction.segment_limits import DIAGONAL
-from scanplan.rays.tolerances import BEHIND_M, ON_M, STRETCH_M
+from scanplan.rays.tolerances import BEHIND_M, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _PARALLEL = math.cos(math.radians(10))  # faces that turn more are chords of a round wall, or others
@@ -23,15 +22,12 @@ class Faces:
         Start and end, the side it is seen from on the left of the way.
     normal : (n, 2) float64
         Unit, towards that side.
-    top_m : (n,) float64
-        Height above the floor up to which each is seen.
     line : (n,) int64
         Faces of one line share its number.
     """
 
     ends_m: FloatArray
     normal: FloatArray
-    top_m: FloatArray
     line: IntArray
 
     def __len__(self) -> int:
@@ -84,15 +80,6 @@ class Faces:
         return (points_m - self.middle_m[one]) @ direction
 
 
-def stand_in_front(faces: Faces, depth_m: float) -> BoolArray:
-    """Return which faces stand before others, up to a depth before and beside them: (n, n) bool.
-
-    What one scan sees behind a face, it sees over it or beside it.
-    """
-    before = faces.is_parallel & (faces.forward_m > BEHIND_M) & (faces.forward_m <= depth_m)
-    return before & (faces.apart_m <= depth_m)
-
-
 def stand_before(faces: Faces, chosen: BoolArray, *, depth_m: float, door_m: float) -> BoolArray:
     """Return which chosen faces stand before which others seen beside them in the room.
 
@@ -134,45 +121,6 @@ def find_backs_m(faces: Faces) -> FloatArray:
     covers = shared_m >= faces.length_m / 2
     is_back = is_opposite & covers.T & (behind_m > 0)
     return np.where(is_back, behind_m, np.inf).min(axis=1, initial=np.inf)
-
-
-def find_corner_faces(faces: Faces, reach_m: float) -> tuple[BoolArray, BoolArray]:
-    """Return which faces meet at the ends of others, across them.
-
-    Parameters
-    ----------
-    faces : Faces
-    reach_m : float
-        Largest distance of two ends that meet.
-
-    Returns
-    -------
-    inner, outer : (n, 2, n) bool
-        Whether at the start and the end of a face each other one makes an inner corner with it, in
-        which either stands before the other, or an outer one, at which both turn away.
-    """
-    ends_m = faces.ends_m
-    normal = faces.normal
-    inner = np.zeros((len(ends_m), 2, len(ends_m)), bool)
-    outer = inner.copy()
-    across = np.abs(normal @ normal.T) < DIAGONAL
-    for own in (0, 1):
-        for other in (0, 1):
-            apart_m = ends_m[None, :, other] - ends_m[:, None, own]
-            meet = across & (np.hypot(apart_m[..., 0], apart_m[..., 1]) <= reach_m)
-            its_far_end = ends_m[None, :, 1 - other] - ends_m[:, None, own]
-            my_far_end = ends_m[:, None, 1 - own] - ends_m[None, :, other]
-            it_is_before = np.einsum("ijk,ik->ij", its_far_end, normal) > 0
-            i_am_before = np.einsum("ijk,jk->ij", my_far_end, normal) > 0
-            inner[:, own] |= meet & it_is_before & i_am_before
-            outer[:, own] |= meet & ~it_is_before & ~i_am_before
-    return inner, outer
-
-
-def find_collinear_faces(faces: Faces, gap_m: float) -> BoolArray:
-    """Return which faces are on one line with others, no farther than a gap apart: (n, n) bool."""
-    same_line = faces.is_parallel & (np.abs(faces.forward_m) <= ON_M)
-    return same_line & (faces.apart_m <= gap_m) & ~np.eye(len(faces), dtype=bool)
 
 
 def _find_front(faces: Faces, one: int, door_m: float) -> tuple[float, float]:
