@@ -69,8 +69,9 @@ types: environment
 style: environment
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
-	@$(BIN)/snakefmt --check Snakefile workflow/Snakefile workflow/rules
+	@$(BIN)/snakefmt --check Snakefile workflow/Snakefile workflow/rules workflow/thesis
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/snakemake --lint --snakefile workflow/thesis/Snakefile
 
 faults: environment ## damaged and hostile input of every kind, and how each ends; an hour
 	@PYTHONPATH=scripts:tests $(BIN)/python -m faults.run_faults $(ARGS)

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("scripts", "tests")
 """Where `import name` is looked for, as pyproject.toml has it for pytest."""
 
+KINDS = ("unit", "stages", "thesis")
 ALWAYS = "tests/unit/test_house.py"
 SETTINGS = ("config/", "workflow/schemas/")
 OF_SETTINGS = ("tests/unit/test_settings.py", "tests/unit/test_dataset.py")
@@ -50,7 +51,7 @@ def _git(root: Path, *words: str, check: bool = True) -> list[str]:
 def list_tests(changed: Iterable[str], root: Path) -> list[str]:
     """Return the test files, relative to the root, that belong to changed files."""
     changed = list(changed)
-    tests = [path for kind in ("unit", "stages") for path in root.glob(f"tests/{kind}/test_*.py")]
+    tests = [path for kind in KINDS for path in root.glob(f"tests/{kind}/test_*.py")]
     names = {path: path.relative_to(root).as_posix() for path in tests}
     chosen = {ALWAYS} | (set(changed) & set(names.values()))
     if any(file.startswith(SETTINGS) for file in changed):

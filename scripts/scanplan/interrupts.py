@@ -52,10 +52,14 @@ def prepare_children() -> None:
     # of weight, compared with the rest
     from pathlib import Path
 
-    startup = Path(__file__).absolute().parents[1] / "startup"
+    lead_children_to(str(Path(__file__).absolute().parents[1] / "startup"))
+
+
+def lead_children_to(folder: str) -> None:
+    """Have Python processes that this one starts find the modules in a folder, before others."""
     places = os.environ.get("PYTHONPATH", "").split(os.pathsep)
-    if str(startup) not in places:
-        os.environ["PYTHONPATH"] = os.pathsep.join([str(startup), *filter(None, places)])
+    if folder not in places:
+        os.environ["PYTHONPATH"] = os.pathsep.join([folder, *filter(None, places)])
 
 
 def exit_status(number: int) -> int:

@@ -6,9 +6,10 @@ import numpy as np
 import pandas as pd
 
 from scanplan.store import schemas
+from thesis import thesis_schemas
 
 _ROOT = Path(__file__).resolve().parents[2]
-_FOLDER = _ROOT / "workflow/report/page"
+_FOLDER = _ROOT / "workflow/thesis/page"
 PAGE = [_FOLDER / "thesis.html.j2", _FOLDER / "thesis.css", _ROOT / "config/deviations.md"]
 SIZES = (1, 15, 27, 40, 60, 80, 270)
 # what the first 1, 15, 27, ... scans of every order find, false negatives being the rest
@@ -73,14 +74,14 @@ def unevenness(**seen_m):
         for crowd in (0, 1)
         for times, value in zip((1, 5, 20), values, strict=True)
     ]
-    return pd.DataFrame(rows, columns=list(schemas.UNEVENNESS.columns))
+    return pd.DataFrame(rows, columns=list(thesis_schemas.UNEVENNESS.columns))
 
 
 def premises(one_wall, **ratios):
     """What is taken for granted: the share on one wall, and ratios of utilities."""
     values = {"points of a cluster on its wall": one_wall, "correct match": 1.0} | ratios
     rows = [(name, item, value) for name, value in values.items() for item in (0, 1)]
-    return pd.DataFrame(rows, columns=list(schemas.PREMISES.columns))
+    return pd.DataFrame(rows, columns=list(thesis_schemas.PREMISES.columns))
 
 
 def times(found=5, **seconds):
@@ -102,7 +103,7 @@ def steps(*n_scans):
     n = len(n_scans)
     seconds, n_bytes = (
         np.array([360.0, np.nan, 90.0, 8.0, 0.5])[:n],
-        np.array([4 * 10**9, schemas.NOT_WRITTEN, 10**7, 10**6, 10**6])[:n],
+        np.array([4 * 10**9, thesis_schemas.NOT_WRITTEN, 10**7, 10**6, 10**6])[:n],
     )
     names = np.array(["Data collection", "Selecting", "Registering", "Hulls", "Selection"])[:n]
     return pd.DataFrame({

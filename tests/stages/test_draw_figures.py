@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 import shapely
 
-from draw_area import draw_area
 from draw_figures import draw_figures
 from helpers import face_making
 from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
+from thesis.stages.draw_area import draw_area
 
 
 @pytest.fixture

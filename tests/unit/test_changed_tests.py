@@ -16,6 +16,8 @@ FILES = {
     "tests/unit/test_settings.py": "",
     "tests/unit/test_walls.py": "from scanplan.plan import walls\n",
     "tests/stages/test_order_scans.py": "from order_scans import order_scans\n",
+    "scripts/thesis/stages/judge_claims.py": "from thesis import judging\n",
+    "tests/thesis/test_claims.py": "from thesis.stages.judge_claims import judge_claims\n",
 }
 
 
@@ -33,6 +35,7 @@ def project(tmp_path):
         ("scripts/scanplan/geometry/lines.py", ["unit/test_lines"]),
         ("scripts/scanplan/plan/walls.py", ["unit/test_walls"]),
         ("scripts/order_scans.py", ["stages/test_order_scans"]),
+        ("scripts/thesis/stages/judge_claims.py", ["thesis/test_claims"]),
         ("tests/helpers/made.py", ["unit/test_lines"]),
         ("tests/unit/test_walls.py", ["unit/test_walls"]),
         ("config/config.yaml", ["unit/test_settings"]),

@@ -35,11 +35,12 @@ def test_an_import_within_a_function_counts(tmp_path):
 
 
 def imported_modules(tree):
-    """Names that a syntax tree imports from the package, but for types alone."""
+    """Names that a syntax tree imports from our packages, but for types alone."""
     names, waiting = set(), [tree]
     while waiting:
         node = waiting.pop()
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("scanplan"):
+        is_import = isinstance(node, ast.ImportFrom)
+        if is_import and (node.module or "").startswith(("scanplan", "thesis")):
             names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
         if not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"):
             waiting.extend(ast.iter_child_nodes(node))
@@ -59,8 +60,13 @@ def test_a_stage_does_not_depend_on_what_it_does_not_import():
 
 
 def test_every_script_imports_helpers_that_exist():
-    for script in SCRIPTS.glob("*.py"):
+    for script in (*SCRIPTS.glob("*.py"), *SCRIPTS.glob("thesis/stages/*.py")):
         assert {"log", "errors"} <= names(script)
+
+
+def test_a_stage_of_the_laboratory_depends_on_helpers_of_both_packages():
+    helpers = {"judging", "room_claims", "thesis_schemas", "tables", "schemas"}
+    assert helpers <= names(SCRIPTS / "thesis/stages/judge_claims.py")
 
 
 def test_a_digest_of_helpers_is_of_what_they_say(tmp_path):
@@ -70,3 +76,15 @@ def test_a_digest_of_helpers_is_of_what_they_say(tmp_path):
     digest = code_files.digest_helpers(one)
     assert len(digest) == 12 and digest == code_files.digest_helpers(same)
     assert digest != code_files.digest_helpers(other)
+
+
+def test_the_code_of_plans_is_all_but_the_laboratorys(tmp_path, monkeypatch):
+    monkeypatch.setattr(code_files, "_PACKAGE", tmp_path / "scanplan")
+    files = [tmp_path / name for name in ("stage.py", "scanplan/helper.py", "thesis/claims.py")]
+    digests = []
+    for file in files:
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(f"# {file.name}\n")
+        digests.append(code_files.digest_code())
+    stage, both, with_laboratory = digests
+    assert stage != both and both == with_laboratory

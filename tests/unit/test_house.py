@@ -16,6 +16,8 @@ import house_figures
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 PACKAGE = SCRIPTS / "scanplan"
+LABORATORY = SCRIPTS / "thesis"
+STAGES = (*SCRIPTS.glob("*.py"), *LABORATORY.glob("stages/*.py"))
 DRAWN = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
 
 HABITS = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
@@ -46,10 +48,10 @@ HOMES = {
     "laspy": ("exports/data/point_cloud.py",),
     "sqlite3": ("exports/data/geopackage.py",),
     "trimesh": ("lab/buildings/",),
-    "jinja2": ("report/", "lab/thesis/"),
-    "matplotlib": ("exports/", "report/", "lab/", "stage/figure_files.py"),
+    "jinja2": ("report/", "thesis/"),
+    "matplotlib": ("exports/", "report/", "stage/figure_files.py", "thesis/"),
     "snakemake": (),
-    "pandas": ("lab/", "report/overview.py"),
+    "pandas": ("lab/", "report/overview.py", "thesis/"),
     "sklearn": ("selection/hulls.py",),
 }
 """Library to the files and folders of the package that may import it."""
@@ -87,12 +89,18 @@ FLOORS = first_cells("Packages")
 
 @cache
 def modules() -> dict[str, Path]:
-    """Return the package's files by their dotted names below `scanplan`."""
+    """Return the helpers' files by their dotted names: below `scanplan`, or from `thesis` on."""
+    helpers = [*PACKAGE.rglob("*.py"), *(set(LABORATORY.rglob("*.py")) - set(STAGES))]
     files = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        parts = path.relative_to(PACKAGE).with_suffix("").parts
+    for path in sorted(helpers):
+        parts = path.relative_to(home_of(path)).with_suffix("").parts
         files[".".join(parts).removesuffix(".__init__")] = path
     return files
+
+
+def home_of(path: Path) -> Path:
+    """Return the folder that a helper's name in the document begins at."""
+    return PACKAGE if path.is_relative_to(PACKAGE) else SCRIPTS
 
 
 @cache
@@ -117,10 +125,10 @@ def run_nodes(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def own_imports(path: Path, *, types: bool = True) -> set[str]:
-    """Return the package's modules that a file imports, as keys of `modules`."""
+    """Return the helpers that a file imports, as keys of `modules`."""
     found = set()
     for name in imported(path, types=types):
-        if name.startswith("scanplan."):
+        if name.startswith(("scanplan.", "thesis.")):
             inner = name.removeprefix("scanplan.")
             found.add(inner if inner in modules() else inner.rpartition(".")[0])
     return found
@@ -133,8 +141,10 @@ def floor(module: str) -> str:
 
 
 def test_the_document_names_every_package_and_no_other():
-    folders = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("*/**/__init__.py")}
-    packages = {f.as_posix() for f in folders if len(f.parts) == 1 or f.parts[0] == "lab"}
+    inits = [path for path in modules().values() if path.name == "__init__.py"]
+    folders = {path.parent.relative_to(home_of(path)) for path in inits} - {Path()}
+    in_parts = ("lab", "thesis")
+    packages = {f.as_posix() for f in folders if len(f.parts) == 1 or f.parts[0] in in_parts}
     loose = {path.stem for path in PACKAGE.glob("*.py")} - {"__init__"}
     assert set(FLOORS) == packages | loose
 
@@ -146,7 +156,8 @@ def test_the_picture_names_packages_that_exist():
 
 def test_the_document_names_files_that_exist():
     places = re.findall(r"`([\w./]+/[\w.]+\.(?:py|yaml|smk|md|j2))`", DRAWN + HABITS)
-    absent = [p for p in places if not (ROOT / p).exists() and not (PACKAGE / p).exists()]
+    homes = (ROOT, PACKAGE, SCRIPTS)
+    absent = [p for p in places if not any((home / p).exists() for home in homes)]
     assert places and absent == []
 
 
@@ -163,10 +174,12 @@ def test_a_package_imports_only_downwards(package):
     assert wrong == []
 
 
-def test_nothing_outside_the_laboratory_imports_it():
-    inside = [name for name in modules() if name.split(".")[0] == "lab"]
-    outside = modules().keys() - set(inside)
-    wrong = [n for n in outside if any(m.startswith("lab") for m in own_imports(modules()[n]))]
+@pytest.mark.parametrize("part", ["lab", "thesis"])
+def test_helpers_of_no_user_are_imported_by_no_others(part):
+    inside = {name for name in modules() if name.split(".")[0] in (part, "thesis")}
+    outside = [path for name, path in modules().items() if name not in inside]
+    outside += SCRIPTS.glob("*.py") if part == "thesis" else []
+    wrong = [p for p in outside if any(m.split(".")[0] == part for m in own_imports(p))]
     assert inside and wrong == []
 
 
@@ -182,7 +195,7 @@ def test_no_module_imports_itself_through_others():
 @pytest.mark.parametrize("library", HOMES)
 def test_a_library_is_imported_in_its_homes_only(library):
     users = [
-        path.relative_to(PACKAGE).as_posix()
+        path.relative_to(home_of(path)).as_posix()
         for path in modules().values()
         if any(name.split(".")[0] == library for name in imported(path, types=True))
     ]
@@ -240,14 +253,16 @@ def test_an_operator_of_shapes_is_refused_in_scripts_and_nowhere_else(operator):
 
 def read_by_rules() -> set[str]:
     """Return the modules that rules import: they run whenever the workflow is parsed."""
-    rules = "\n".join(file.read_text() for file in (ROOT / "workflow/rules").glob("*.smk"))
+    rules = "\n".join(file.read_text() for file in (ROOT / "workflow").rglob("*.smk"))
+    rules += (ROOT / "workflow/thesis/Snakefile").read_text()
     names = set()
-    for origin, what in re.findall(r"^from (scanplan[\w.]*) import ([\w, ]+|\()", rules, re.M):
+    pattern = r"^from ((?:scanplan|thesis)[\w.]*) import ([\w, ]+|\()"
+    for origin, what in re.findall(pattern, rules, re.M):
         inner = origin.removeprefix("scanplan").removeprefix(".")
         parts = [f"{inner}.{name.strip()}" for name in what.split(",")]
         names.update(part for part in parts if part in modules())
         names.add(inner)
-    return {f"scanplan.{name}" for name in names}
+    return {name if name.startswith("thesis") else f"scanplan.{name}" for name in names}
 
 
 def test_what_rules_import_is_light():
@@ -278,7 +293,7 @@ def test_stages_begin_without_scipy_where_they_do_not_need_it():
 
 
 def test_only_guarded_calls_of_stages_say_snakemake():
-    for script in SCRIPTS.glob("*.py"):
+    for script in STAGES:
         before, _, _ = script.read_text(encoding="utf-8").partition('if __name__ == "__main__":')
         assert "snakemake." not in before, script.name
 

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.targets import check_targets
+from scanplan.project.targets import asks_for_laboratory, check_targets
 
 FOLDERS = ["demo", "thesis", "town_hall"]
 
@@ -35,3 +35,22 @@ def test_rules_and_results_are_targets():
     asked = ["all", "thesis", "results/demo/plan/plan.svg", "results/thesis/report.html"]
     asked += ["results/town_hall/building.ifc", "results/overview.html", "plan.svg", ""]
     check_targets(asked, ["demo"], FOLDERS)
+
+
+@pytest.mark.parametrize(
+    "word",
+    [
+        *("comparison", "thesis", "thesis_more", "results/thesis/report.html"),
+        *("results/thesis/ring_rooms_1/poses.parquet", "results/demo/comparison.html"),
+        *("./results/demo/evaluation/walls.parquet", "results/demo/figures/area.svg"),
+    ],
+)
+def test_what_the_laboratory_alone_makes_asks_for_it(word):
+    assert asks_for_laboratory(["--cores", "2", word])
+
+
+def test_what_a_plan_is_made_of_asks_for_no_laboratory():
+    words = ["--cores", "2", "all", "results/demo/plan/plan.svg", "", "results", "/"]
+    words += ["results/demo/evaluation/plan.parquet", "results/demo/walls/cluster_ransac.parquet"]
+    words += ["--configfile", "config/thesis.yaml", "--config", "dataset=comparison"]
+    assert not asks_for_laboratory(words)

@@ -7,12 +7,12 @@ from scanplan.lab.evaluation import (
     face_cells,
     first_ranks,
     length_metrics,
-    order_metrics,
     visible_faces,
     wall_findings,
     wall_metrics,
 )
 from scanplan.lab.evaluation.truth_file import TrueFaces
+from thesis.comparison import order_metrics
 
 NO_FACES = np.empty((0, 2, 2))
 FACES = [(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 3, 4), (0, 4, 0, 0)]

@@ -8,8 +8,12 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
+# the laboratory's workflow, which surveys more than the user's datasets; its run is like one of ours
+LABORATORY = None
+if not workflow.modifier.is_main_snakefile():
+    LABORATORY = config.pop("laboratory", None)
 # of another workflow, whose run, console and lock are not ours
-IS_MODULE = not workflow.modifier.is_main_snakefile()
+IS_MODULE = not (workflow.modifier.is_main_snakefile() or LABORATORY)
 if not IS_MODULE:
     # all objects of a graph of jobs stay: to look for garbage among them after every 700 new ones
     # takes a sixth of a start
@@ -26,7 +30,6 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
-from scanplan.lab.thesis import experiments
 from scanplan.project import building_file, export_formats, stage_settings
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
@@ -111,9 +114,9 @@ def given_datasets():
     }
 
 
-def thesis_surveys():
-    """The surveys of the thesis's experiments, by kind."""
-    return experiments.list_surveys(config=f"{PROJECT}/config", **KNOWN)
+def further_surveys():
+    """The surveys of the laboratory, by kind."""
+    return LABORATORY.list_wanted(sys.argv[1:], config=f"{PROJECT}/config", **KNOWN)
 
 
 def given_targets():
@@ -130,39 +133,11 @@ def given_targets():
     return parsed.targets
 
 
-THESIS_RULES = (
-    "thesis",
-    "judge_claims",
-    "draw_thesis_rooms",
-    "draw_thesis_drive",
-    "draw_gates",
-    "write_thesis",
-    "thesis_more",
-    "write_thesis_more",
-)
-
-
-def wanted_of_thesis(arguments):
-    """Those of the command's arguments that ask for the thesis's experiments: rules or results of them."""
-    folder = f"results/{RESERVED}/"
-    return [a for a in arguments if a in THESIS_RULES or a.startswith(folder)]
-
-
-def thesis_if_fit():
-    """The thesis's surveys; none where settings meant for another survey unfit them and nobody asks for them."""
-    try:
-        return thesis_surveys()
-    except StageError:
-        if wanted_of_thesis(sys.argv[1:]):
-            raise
-        return {}
-
-
 GIVEN = or_end(given_datasets)
 # two or more datasets in a folder with building.yaml are storeys of one building
 NAMED = name_datasets(RUN["dataset"])
 BUILDING = or_end(building_file.find_building, NAMED)
-THESIS = or_end(thesis_if_fit)
+SURVEYS = or_end(further_surveys) if LABORATORY else {}
 # a job's own process finds the note that its run has made
 if workflow.is_main_process and not IS_MODULE:
     for note in (note for found in GIVEN.values() for note in found.notes):
@@ -177,10 +152,18 @@ if workflow.is_main_process and not IS_MODULE:
         RUN["replace"] or [],
     )
 # jobs are worked out for what is asked for; these are all that could be
-DATASETS = GIVEN | {found.name: found for kind in THESIS.values() for found in kind}
+DATASETS = GIVEN | {found.name: found for kind in SURVEYS.values() for found in kind}
 if workflow.is_main_process and not IS_MODULE:
     others = [*DATASETS, RESERVED, *([BUILDING.name] if BUILDING else [])]
     or_end(check_targets, given_targets(), list(GIVEN), others)
+
+
+# how the simulated datasets are recorded: those alone have rules
+RECORDED_AS = {
+    dataset.settings["simulate"]["recording"]
+    for dataset in DATASETS.values()
+    if dataset.building
+}
 
 
 def simulated_as(suffix):
@@ -394,34 +377,10 @@ def plan_walls(wildcards):
     return f"results/{wildcards.dataset}/walls/{extractor}.parquet"
 
 
-def all_selections(wildcards):
-    """Orderings of all methods of one dataset."""
-    return [
-        f"results/{wildcards.dataset}/selection/{method}.parquet" for method in METHODS
-    ]
-
-
 def compared_extractors(name):
     """Extractors that a dataset's evaluation compares: ours, and that of its plan."""
     chosen = DATASETS[name].settings["plan"]["extractor"]
     return [e for e in EXTRACTORS if e == chosen or not e.startswith("thesis_")]
-
-
-def all_walls(wildcards):
-    """Walls by all compared extractors of one dataset."""
-    return [
-        f"results/{wildcards.dataset}/walls/{extractor}.parquet"
-        for extractor in compared_extractors(wildcards.dataset)
-    ]
-
-
-def extraction_times(wildcards):
-    """Run times of all compared extractors of one dataset."""
-    return [
-        f"benchmarks/{wildcards.dataset}/{times}.tsv"
-        for extractor in compared_extractors(wildcards.dataset)
-        for times in timed(f"extract_walls_{extractor}", wildcards.dataset)
-    ]
 
 
 def building(wildcards):

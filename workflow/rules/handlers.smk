@@ -93,9 +93,9 @@ def tell_results():
     if not has_files_here():
         return
     targets = workflow.dag_settings.targets
-    pages = {"thesis": "report", "thesis_more": "more"}
+    pages = LABORATORY.PAGES if LABORATORY else {}
     for target in sorted(pages.keys() & set(targets)):
-        tell(f"\nreport:  results/{RESERVED}/{pages[target]}.html")
+        tell(f"\nreport:  {pages[target]}")
     if is_whole():
         for name in GIVEN:
             tell(run_outcome.describe_results(name))

@@ -49,32 +49,6 @@ rule draw_figures:
         "../../scripts/draw_figures.py"
 
 
-rule draw_area:
-    """Draw the covered area against the number of scans, for every ordering."""
-    input:
-        selections=all_selections,
-        hulls="results/{dataset}/hulls.parquet",
-    output:
-        figure=report(
-            "results/{dataset}/figures/area.svg",
-            caption="../report/area.rst",
-            category="{dataset}",
-            labels={"figure": "3 covered area"},
-        ),
-    log:
-        "logs/{dataset}/draw_area.log",
-    benchmark:
-        "benchmarks/{dataset}/draw_area.tsv"
-    threads: 1
-    resources:
-        mem_mb=grown(mem_mb=1000),
-        runtime=grown(runtime=10),
-    params:
-        code=code_of("draw_area"),
-    script:
-        "../../scripts/draw_area.py"
-
-
 # what a report is made of, with a comparison or without
 REPORT_TABLES = {
     "faces": plan_table("faces"),
@@ -123,27 +97,3 @@ rule write_report:
         run_times=run_times([]),
     script:
         "../../scripts/write_report.py"
-
-
-# a page of its own: a later run of the plan alone takes nothing from it
-use rule write_report as write_comparison with:
-    input:
-        **REPORT_TABLES,
-        figures=figures_among(compared),
-        evaluation=evaluated("plan", "walls"),
-        results=files_beside(compared),
-    output:
-        page="results/{dataset}/comparison.html",
-    log:
-        "logs/{dataset}/write_comparison.log",
-    benchmark:
-        "benchmarks/{dataset}/write_comparison.tsv"
-    params:
-        code=code_of("write_report"),
-        settings=all_settings,
-        storeys=storeys_beside,
-        run_times=run_times(
-            METHODS,
-            EXTRACTORS,
-            ["draw_area", "evaluate_walls", "tabulate_seconds", "draw_evaluation"],
-        ),

@@ -1,8 +1,3 @@
-def compared(name):
-    """All results of a dataset, with those of the comparison."""
-    return results_of(name) + comparison_of(name)
-
-
 def figures_among(files_of):
     """An input function: the figures among the results of the job's dataset."""
 
@@ -78,16 +73,11 @@ def run_times(orderings, extractors=(), comparing=()):
     return measured
 
 
-def page_files(*names):
+def page_files(*names, folder="workflow/report/page"):
     """Files that a page is made from: templates, style and script."""
-    folder = f"{PROJECT}/workflow/report/page"
-    return [local(os.path.relpath(f"{folder}/{name}")) for name in names]
+    return [local(os.path.relpath(f"{PROJECT}/{folder}/{name}")) for name in names]
 
 
 REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js"),
 )
-THESIS_PAGE = [
-    *page_files("thesis.html.j2", "thesis.css"),
-    local(os.path.relpath(f"{PROJECT}/config/deviations.md")),
-]

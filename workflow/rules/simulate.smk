@@ -21,15 +21,19 @@ rule simulate_survey:
         "../../scripts/simulate_survey.py"
 
 
-use rule simulate_survey as simulate_survey_db3 with:
-    output:
-        **survey_files("db3"),
-    wildcard_constraints:
-        dataset=simulated_as("db3"),
+if "db3" in RECORDED_AS:
+
+    use rule simulate_survey as simulate_survey_db3 with:
+        output:
+            **survey_files("db3"),
+        wildcard_constraints:
+            dataset=simulated_as("db3"),
 
 
-use rule simulate_survey as simulate_survey_mcap with:
-    output:
-        **survey_files("mcap"),
-    wildcard_constraints:
-        dataset=simulated_as("mcap"),
+if "mcap" in RECORDED_AS:
+
+    use rule simulate_survey as simulate_survey_mcap with:
+        output:
+            **survey_files("mcap"),
+        wildcard_constraints:
+            dataset=simulated_as("mcap"),

@@ -1,6 +1,6 @@
-"""The laboratory: simulated surveys, evaluation against the truth, and the thesis.
+"""Surveys with a known truth: simulated ones, and what plans and poses are measured by.
 
-Nothing outside imports it. Within it imports go one way: `simulation` imports `buildings` and
-`evaluation`, `thesis` imports `evaluation`; `buildings` and `evaluation` import neither each other
-nor what is above them.
+No other package imports it, and no stage that a recording without a truth runs. Within it imports
+go one way: `simulation` imports `buildings` and `evaluation`, which import neither each other nor
+what is above them.
 """

@@ -9,13 +9,16 @@ from pathlib import Path
 from scanplan.plain_types import FilePath
 
 _PACKAGE = Path(__file__).parents[1]
-_IMPORT = re.compile(rf"^[ \t]*from ({_PACKAGE.name}[\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
+_LABORATORY = "thesis"
+_IMPORT = re.compile(
+    rf"^[ \t]*from ((?:{_PACKAGE.name}|{_LABORATORY})[\w.]*) import (\([^)]*\)|.*)", re.MULTILINE
+)
 _NAME = re.compile(r"\w+")
 _FOR_TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t].*\n|\n)*", re.MULTILINE)
 
 
 def list_helpers(script: FilePath) -> list[Path]:
-    """Return the files of this package that a script imports, directly or through one another.
+    """Return the files of our packages that a script imports, directly or through one another.
 
     Parameters
     ----------
@@ -44,8 +47,13 @@ def digest_helpers(script: FilePath) -> str:
 
 
 def digest_code() -> str:
-    """Return 12 hexadecimal digits that name the code: a digest of all scripts and helpers."""
-    return _digest_files(sorted(_PACKAGE.parent.rglob("*.py")))
+    """Return 12 hexadecimal digits that name the code of plans: a digest of scripts and helpers.
+
+    The laboratory's are left out, as no plan is made by them.
+    """
+    laboratory = _PACKAGE.with_name(_LABORATORY)
+    files = sorted(_PACKAGE.parent.rglob("*.py"))
+    return _digest_files(file for file in files if not file.is_relative_to(laboratory))
 
 
 def _digest_files(files: Iterable[Path]) -> str:

@@ -48,7 +48,13 @@ _DRAWN = (
     "summary.txt",
 )
 _EVALUATION = ("plan", "poses")
-_COMPARED = ("walls", "walls_aligned", "oracle", "seconds")
+_COMPARED = ("comparison.html", "figures/area.svg")
+_COMPARED_WITH_TRUTH = (
+    *(f"evaluation/{table}.parquet" for table in ("walls", "walls_aligned", "oracle", "seconds")),
+    *("figures/evaluation.svg", "figures/oracle_shares.svg"),
+)
+COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH)
+"""Results of a dataset that the comparison alone has stages for."""
 
 
 @dataclass(frozen=True)
@@ -286,10 +292,9 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     others = [method for method in methods if method != found.settings["plan"]["method"]]
     files = [f"selection/{method}.parquet" for method in others]
     files += [f"walls/{extractor}.parquet" for extractor in extractors]
-    files += ["hulls.parquet", "figures/area.svg", "comparison.html"]
+    files += ["hulls.parquet", *_COMPARED]
     if found.truth:
-        files += [f"evaluation/{table}.parquet" for table in _COMPARED]
-        files += ["figures/evaluation.svg", "figures/oracle_shares.svg"]
+        files += _COMPARED_WITH_TRUTH
     return [f"results/{found.name}/{file}" for file in files]
 
 

@@ -18,7 +18,9 @@ SETTINGS_FILE = "dataset.yaml"
 TRUTH_FILES = ("truth.geojson", "truth_poses.tum")
 RESERVED = "thesis"
 """Name under results/ that the thesis's experiments have to themselves."""
-TARGETS = ("all", "comparison", RESERVED, "thesis_more")
+OF_LABORATORY = ("comparison", RESERVED, "thesis_more")
+"""Targets of the laboratory's workflow, `workflow/thesis/Snakefile`."""
+TARGETS = ("all", *OF_LABORATORY)
 """What a command may ask for beside files."""
 _TAKEN = (*TARGETS, "summary.html", "summary.parquet")
 """What else stands under results/, or is asked for by its name."""

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from pathlib import PurePath
 
 from scanplan.errors import StageError
-from scanplan.project import texts
+from scanplan.project import dataset, dataset_files, texts
 
 
 def check_targets(
@@ -42,6 +42,25 @@ def check_targets(
                 f"{target}: no dataset {rest[0]} is given, only {given}; add"
                 " `--config dataset=PATH`, the folder or recording that these results are of"
             )
+
+
+def asks_for_laboratory(words: Iterable[str]) -> bool:
+    """Return whether a command asks for what the laboratory's workflow alone makes.
+
+    Parameters
+    ----------
+    words : iterable of str
+        Of the command. The value of an option may look like a target: no harm, as that workflow
+        makes all that the other does.
+    """
+    return any(map(_is_of_laboratory, words))
+
+
+def _is_of_laboratory(word: str) -> bool:
+    folder, *rest = PurePath(word).parts or ("",)
+    if folder != "results" or len(rest) < 2:
+        return word in dataset_files.OF_LABORATORY
+    return rest[0] == dataset_files.RESERVED or "/".join(rest[1:]) in dataset.COMPARISON
 
 
 def _as_config(key: str, value: str) -> str:

@@ -1,1 +1,0 @@
-"""The thesis's experiments, figures and claims."""
