@@ -82,7 +82,7 @@ audit: environment ## licences of all packages; fails on ones that do not fit th
 bench: environment ## the stages against the algorithms of the thesis written literally
 	@$(BIN)/python tests/benchmarks/run.py $(ARGS)
 
-figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, ARGS=--types counts type errors
+figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, --places says where, --types counts errors
 	@$(BIN)/python tests/house_figures.py $(ARGS)
 
 pictures: environment ## the pictures of README.md from results/demo, by a headless Chromium
