@@ -7,13 +7,9 @@ from hypothesis import strategies as st
 
 from helpers.ray_making import NORTH, rays, turned
 from scanplan.geometry.lines import Line
-from scanplan.rays.expected_returns import (
-    ALL_HEIGHTS_M,
-    SentRays,
-    count_returns_below,
-    count_sent_rays,
-)
+from scanplan.rays.expected_returns import ALL_HEIGHTS_M, SentRays, count_sent_rays
 from scanplan.rays.face_rays import cast_at_face
+from scanplan.rays.usual_returns import count_returns_below
 
 AZIMUTH_RAD = np.radians(np.arange(-179.5, 180))
 ELEVATIONS_DEG = np.arange(-4.5, 5, 1.0)  # ten beams

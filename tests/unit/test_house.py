@@ -183,8 +183,14 @@ def test_helpers_of_no_user_are_imported_by_no_others(part):
     assert inside and wrong == []
 
 
-def test_no_module_imports_itself_through_others():
-    arrows = {name: own_imports(path, types=False) for name, path in modules().items()}
+CIRCLES_OF_TYPES = {"plan.faces.candidates", "plan.faces.face_pairs"}
+"""Modules that name one another's types; they go with the rules that they are of."""
+
+
+@pytest.mark.parametrize("types", [False, True])
+def test_no_module_imports_itself_through_others(types):
+    left_out = CIRCLES_OF_TYPES if types else set()
+    arrows = {n: own_imports(path, types=types) - left_out for n, path in modules().items()}
     while arrows:
         leaves = [name for name, targets in arrows.items() if not targets & arrows.keys()]
         assert leaves, f"these import one another: {sorted(arrows)}"

@@ -9,17 +9,14 @@ lets most through, to where there may be nothing, and mirrors others away.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.rays import usual_returns
+from scanplan.rays.face_rays import FaceRays
+from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
-
-if TYPE_CHECKING:
-    from scanplan.rays.face_rays import FaceRays
-    from scanplan.rays.ray_set import RaySet
 
 GRAZING_RAD = np.deg2rad(75)
 """Angle between ray and surface normal from which on returns get lost."""
@@ -30,34 +27,10 @@ Their rays are few, and much stands before the surface.
 """
 
 _GRAZING = np.tan(GRAZING_RAD)
-_ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
 _LEAST_RAYS = 20.0  # half of so many are not lost by chance
 DEEP_M = 0.6  # no wall is thicker
 ALL_HEIGHTS_M = (-np.inf, np.inf)
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
-
-
-def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArray:
-    """Count a scan's returns below elevations, per degree of azimuth around which there are any.
-
-    Parameters
-    ----------
-    azimuth_rad : (n,) float
-    xyz_m : (n, 3) float
-        Relative to the sensor.
-
-    Returns
-    -------
-    (1801,) float64
-        Below each elevation from -90 degrees on, in steps of 0.1 degrees.
-    """
-    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
-    sector = np.minimum(sector, N_SECTORS - 1)
-    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
-    elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
-    n_rows = 180 * _ROWS_PER_DEG
-    row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
-    return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,8 +109,8 @@ class SentRays:
 
 
 def count_sent_rays(
-    rays: "RaySet",
-    face: "FaceRays",
+    rays: RaySet,
+    face: FaceRays,
     low_m: float,
     count: int | IntArray,
     column_m: float,
@@ -194,8 +167,8 @@ def count_sent_rays(
 
 
 def expect_returns(
-    rays: "RaySet",
-    face: "FaceRays",
+    rays: RaySet,
+    face: FaceRays,
     low_m: float,
     count: int,
     column_m: float,
@@ -210,8 +183,8 @@ def expect_returns(
 
 
 def _expect_returns(
-    rays: "RaySet",
-    face: "FaceRays",
+    rays: RaySet,
+    face: FaceRays,
     low_m: float,
     counts: IntArray,
     column_m: float,
@@ -245,7 +218,7 @@ def _expect_returns(
 
 
 def _returns_per_deg(
-    rays: "RaySet",
+    rays: RaySet,
     scans: IntArray,
     distance_m: FloatArray,
     heights_m: tuple[FloatArray, FloatArray],
@@ -260,7 +233,7 @@ def _returns_per_deg(
         From where to where.
     """
     low, high = (
-        _below(
+        usual_returns.count_below(
             rays.usual,
             scans[:, None],
             np.arctan2(height_m + rays.floor_z_m - rays.sensors_m[scans, 2, None], distance_m),
@@ -268,14 +241,6 @@ def _returns_per_deg(
         for height_m in heights_m
     )
     return high - low
-
-
-def _below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:
-    """Return the running sums (s, n) of scans at elevations, straight between the steps."""
-    at = (np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG
-    row = np.minimum(at.astype(np.int64), usual.shape[1] - 2)
-    below = usual[scan, row]
-    return below + (at - row) * (usual[scan, row + 1] - below)
 
 
 def sum_neighbours(rows: Array, width: int) -> FloatArray:

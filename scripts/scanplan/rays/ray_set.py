@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from scanplan.rays import azimuth_sectors, beam_spread, expected_returns, levels
+from scanplan.rays import azimuth_sectors, beam_spread, levels, usual_returns
 from scanplan.stage import workers
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -78,11 +78,11 @@ class RaySet:
     def usual(self) -> FloatArray:
         """Returns that a degree of azimuth usually has below an elevation, (s, 1801).
 
-        See `expected_returns`.
+        See `usual_returns`.
         """
         return np.array(
             [
-                expected_returns.count_returns_below(azimuth_rad, way_m)
+                usual_returns.count_returns_below(azimuth_rad, way_m)
                 for azimuth_rad, way_m in self.ways()
             ]
         )

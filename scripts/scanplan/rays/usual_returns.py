@@ -1,0 +1,52 @@
+"""How many returns a scan usually gets back at an elevation."""
+
+import numpy as np
+
+from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.types import FloatArray, IntArray
+
+_ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
+
+
+def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArray:
+    """Count a scan's returns below elevations, per degree of azimuth around which there are any.
+
+    Parameters
+    ----------
+    azimuth_rad : (n,) float
+    xyz_m : (n, 3) float
+        Relative to the sensor.
+
+    Returns
+    -------
+    (1801,) float64
+        Below each elevation from -90 degrees on, in steps of 0.1 degrees.
+    """
+    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
+    sector = np.minimum(sector, N_SECTORS - 1)
+    seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
+    elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
+    n_rows = 180 * _ROWS_PER_DEG
+    row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
+    return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
+
+
+def count_below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:
+    """Return how many returns to a degree of azimuth scans usually have below elevations, (s, n).
+
+    Parameters
+    ----------
+    usual : (k, 1801) float64
+        See `count_returns_below`, of all scans.
+    scan : (s, 1) int
+    elevation_rad : (s, n) float64
+
+    Returns
+    -------
+    (s, n) float64
+        Straight between the steps.
+    """
+    at = (np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG
+    row = np.minimum(at.astype(np.int64), usual.shape[1] - 2)
+    below = usual[scan, row]
+    return below + (at - row) * (usual[scan, row + 1] - below)
