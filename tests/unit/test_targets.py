@@ -49,6 +49,13 @@ def test_what_the_laboratory_alone_makes_asks_for_it(word):
     assert asks_for_laboratory(["--cores", "2", word])
 
 
+def test_what_another_workflow_makes_is_told_with_how_to_run_it():
+    for target in ("comparison", "results/demo/comparison.html", "results/thesis/report.html"):
+        with pytest.raises(StageError, match=f"{target}: .* give `-s lab/Snakefile`"):
+            check_targets([target], ["demo"], FOLDERS, laboratory="lab/Snakefile")
+    check_targets(["all", "results/demo/report.html"], ["demo"], FOLDERS, laboratory="lab")
+
+
 def test_what_a_plan_is_made_of_asks_for_no_laboratory():
     words = ["--cores", "2", "all", "results/demo/plan/plan.svg", "", "results", "/"]
     words += ["results/demo/evaluation/plan.parquet", "results/demo/walls/cluster_ransac.parquet"]

@@ -32,11 +32,13 @@ rule count_poses:
 """
 
 
-def call(project_root, folder, *arguments, prefix="", dataset=None, table="poses.parquet"):
+def call(
+    project_root, folder, *arguments, prefix="", dataset=None, table="poses.parquet", used=None
+):
     """Run a workflow that uses ours, from a folder of its own."""
     dataset = dataset or os.fspath(project_root / TINY)
     text = CALLER.format(
-        snakefile=project_root / ("workflow/Snakefile" if prefix else "Snakefile"),
+        snakefile=project_root / (used or ("workflow/Snakefile" if prefix else "Snakefile")),
         prefix=f'    prefix:\n        "{prefix}"\n' if prefix else "",
         folder=f"{prefix}/" if prefix else "",
         dataset=dataset,
@@ -66,6 +68,19 @@ def test_the_whole_plan_can_be_asked_for(project_root, tmp_path):
     planned = call(project_root, tmp_path, "-n", prefix="surveys", table="report.html")
     assert planned.returncode == 0, planned.stderr
     assert "floor_assemble_plan" in planned.stdout
+
+
+def test_the_comparison_is_the_laboratorys_to_be_asked_for(project_root, tmp_path):
+    laboratory = {"prefix": "surveys", "used": "workflow/thesis/Snakefile"}
+    planned = call(project_root, tmp_path, "-n", table="comparison.html", **laboratory)
+    assert planned.returncode == 0, planned.stderr
+    assert "floor_write_comparison" in planned.stdout
+    assert "output: surveys/results/tiny/evaluation/walls.parquet" in planned.stdout
+    # nor is its run ours
+    refused = call(project_root, tmp_path, "-n", dataset="nowhere", **laboratory)
+    assert refused.returncode != 0
+    said = refused.stdout + refused.stderr
+    assert "WorkflowError" in said and "scanplan: nowhere: does not exist" in said
 
 
 def test_a_users_files_are_not_moved_by_the_prefix(project_root, tmp_path):

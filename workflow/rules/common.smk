@@ -8,12 +8,15 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-# the laboratory's workflow, which surveys more than the user's datasets; its run is like one of ours
+# what the laboratory's workflow hands in, which surveys more than the user's datasets
 LABORATORY = None
-if not workflow.modifier.is_main_snakefile():
+OUTERMOST = workflow.modifier
+if not OUTERMOST.is_main_snakefile():
     LABORATORY = config.pop("laboratory", None)
+    # a run of it is like one of ours
+    OUTERMOST = OUTERMOST.parent_modifier if LABORATORY else OUTERMOST
 # of another workflow, whose run, console and lock are not ours
-IS_MODULE = not (workflow.modifier.is_main_snakefile() or LABORATORY)
+IS_MODULE = not OUTERMOST.is_main_snakefile()
 if not IS_MODULE:
     # all objects of a graph of jobs stay: to look for garbage among them after every 700 new ones
     # takes a sixth of a start
@@ -155,7 +158,14 @@ if workflow.is_main_process and not IS_MODULE:
 DATASETS = GIVEN | {found.name: found for kind in SURVEYS.values() for found in kind}
 if workflow.is_main_process and not IS_MODULE:
     others = [*DATASETS, RESERVED, *([BUILDING.name] if BUILDING else [])]
-    or_end(check_targets, given_targets(), list(GIVEN), others)
+    laboratory = os.path.relpath(f"{PROJECT}/workflow/thesis/Snakefile")
+    or_end(
+        check_targets,
+        given_targets(),
+        list(GIVEN),
+        others,
+        None if LABORATORY else laboratory,
+    )
 
 
 # how the simulated datasets are recorded: those alone have rules

@@ -6,13 +6,17 @@ from collections.abc import Collection, Iterable
 from pathlib import PurePath
 
 from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
 from scanplan.project import dataset, dataset_files, texts
 
 
 def check_targets(
-    targets: Iterable[str], datasets: Collection[str], others: Collection[str]
+    targets: Iterable[str],
+    datasets: Collection[str],
+    others: Collection[str],
+    laboratory: FilePath | None = None,
 ) -> None:
-    """Refuse targets that are settings or no paths, and results of datasets that were not given.
+    """Refuse targets that are settings or no paths, and results that this workflow does not make.
 
     Parameters
     ----------
@@ -22,6 +26,8 @@ def check_targets(
         Names of the given ones.
     others : collection of str
         Names of all folders of results that rules make.
+    laboratory : path-like, optional
+        The workflow that makes what `asks_for_laboratory` finds, where this one is another.
 
     Raises
     ------
@@ -35,6 +41,8 @@ def check_targets(
             raise StageError(
                 f"{target}: is a setting, not a target; write --config {_as_config(key, value)}"
             )
+        if laboratory is not None and asks_for_laboratory([target]):
+            raise StageError(f"{target}: is made by a workflow of its own; give `-s {laboratory}`")
         folder, *rest = PurePath(target).parts or ("",)
         if folder == "results" and len(rest) > 1 and rest[0] not in {*datasets, *others}:
             given = ", ".join(datasets)

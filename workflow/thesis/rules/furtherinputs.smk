@@ -58,4 +58,4 @@ def settings_of_search(*parts):
 
 def thesis_setting(key):
     """A setting of the experiments."""
-    return THESIS[experiments.ROOMS][0].settings["thesis"][key] if THESIS else None
+    return THESIS[experiments.ROOMS][0].settings["thesis"][key]

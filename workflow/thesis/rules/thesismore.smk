@@ -247,7 +247,7 @@ rule write_thesis_more:
         surrogates=of_kind(experiments.ROOMS, "thesis/surrogates"),
         floors=expand(
             "results/thesis/floors_{floor_seed}.parquet",
-            floor_seed=thesis_setting("floor_seeds") or [],
+            floor_seed=thesis_setting("floor_seeds"),
         ),
         page=page_files("thesis_more.html.j2", "thesis.css"),
     output:

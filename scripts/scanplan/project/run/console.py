@@ -18,10 +18,11 @@ from pathlib import Path
 from snakemake_interface_logger_plugins.common import LogEvent
 
 from scanplan.interrupts import WATCHED
+from scanplan.project.dataset_files import TARGETS
 from scanplan.project.run.terminal import Terminal
 
 _NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all results are there
-_NO_STAGES = ("total", "all", "comparison", "thesis", "thesis_more")
+_NO_STAGES = ("total", *TARGETS)
 _REDRAWN_EVERY_S = 0.25  # as often as an eye follows numbers
 _TOLD_EVERY_S = 60.0  # a log file of a run of an hour has a hundred lines more, not thousands
 _DEFAULT_SCREEN = "DefaultStreamHandler"
