@@ -44,11 +44,11 @@ def report(kind: str, found: Found, rules: Mapping[str, Rule], base: str, folder
         writer = csv.DictWriter(opened, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
-    base = row_of_base(found)
+    whole = row_of_base(found)
     lines = [
         f"## {kind}: {len(found)} ({', '.join(found)})",
         "",
-        "With all rules: " + ", ".join(f"{measures[m]} {value:.3f}" for m, value in base.items()),
+        "With all rules: " + ", ".join(f"{measures[m]} {value:.3f}" for m, value in whole.items()),
         "",
         "| " + " | ".join(measures.get(column, column) for column in columns) + " |",
         "|" + "---|" * len(columns),

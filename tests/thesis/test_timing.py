@@ -104,7 +104,7 @@ def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
     monkeypatch.setattr(timing.per_registered_scan, "sensor_keywords", lambda *_: {0: at, 3: at})
     store = tables.ScanStore(tmp_path / "scans.parquet")
     busy = Extractor(SegmentLimits, Busy().extract)
-    given = {**toy_rooms.LIMITS, **toy_rooms.FURNITURE}
+    given = {**toy_rooms.LIMITS, "max_rmse_m": 0.025}
     rows = list(timing.time_extractor("busy", busy, store, [0, 3], given, "registration.parquet"))
     assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
     assert all(0.001 <= row["seconds"] < 0.04 for row in rows)

@@ -36,8 +36,6 @@ OF_THE_WORKFLOW = {
     "simulate.recording",
     "advanced.jobs.chunk_gb",
 }
-# what stages receive as yes or no
-OF_A_CHOICE = {"advanced.plan.surfaces"}
 
 
 def received(settings):
@@ -88,7 +86,7 @@ def leaves(values):
 
 
 @pytest.mark.parametrize(
-    "key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW | OF_A_CHOICE]
+    "key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW]
 )
 def test_every_key_reaches_a_stage(key):
     changed = 77.5  # no default

@@ -59,8 +59,9 @@ def frame_bands(opening: DrawnOpening) -> list[tuple[float, float, BaseGeometry]
     whole = overlays.buffer_shapes(opening.line_m, half_m, cap_style="flat")
     # what is clear, taken from the whole, would leave slivers along the edges that both share
     line_m, frame_m = opening.line_m, opening.frame_m
-    ends_m = [substring(line_m, 0.0, frame_m), substring(line_m, line_m.length - frame_m, np.inf)]
-    jambs = overlays.buffer_shapes(MultiLineString(ends_m), half_m, cap_style="flat")
+    spans_m = ((0.0, frame_m), (line_m.length - frame_m, line_m.length))
+    ends_m = MultiLineString([substring(line_m, *span_m).coords for span_m in spans_m])
+    jambs = overlays.buffer_shapes(ends_m, half_m, cap_style="flat")
     return [
         (opening.sill_m, opening.clear_lintel_m, jambs),
         (opening.clear_lintel_m, opening.lintel_m, whole),
