@@ -84,7 +84,7 @@ def assemble_plan(
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count)
-    heights_m, warning = wait_for_rays()
+    heights_m, sparse = wait_for_rays()
     drawn = FloorPlan(
         name="",
         **{name: getattr(plan, name) for name in ("faces", "walls", "openings", "rooms", "free")},
@@ -92,25 +92,27 @@ def assemble_plan(
         ceiling_z_m=float(heights_m["ceiling_z_m"]),
     )
     track_m = poses[np.argsort(registered.t_ns), :2, 3]
-    new = witnesses.tell("assemble_plan", contradictions.measure_drawn_walls(drawn, rays, track_m))
-    found = doubts.read_doubts(registration, schemas.REGISTRATION).add(contradictions=new)
-    for sentence in new:
-        log.log_warning(f"assemble_plan: {sentence}")
+    measured = [sparse, *contradictions.measure_drawn_walls(drawn, rays, track_m)]
+    found = (
+        doubts.read_doubts(registration, schemas.REGISTRATION)
+        .join(doubts.read_doubts(walls, schemas.WALLS))
+        .add(findings=witnesses.tell("assemble_plan", measured))
+    )
     for name, schema in planning.TABLES.items():
         notes = {**heights_m, **found.as_notes()} if name == "free" else None
         columns = getattr(plan, name)
         tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
-    if warning:
-        log.log_warning(f"assemble_plan: {warning}")
     log.log_line(
         f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
         f" make {messages.summarise_plan(plan)}"
     )
 
 
-def _read_rays(rays: ray_set.RaySet, min_opening_m: float) -> tuple[dict[str, str], str]:
-    """Return `_find_heights`, and a warning where rays are too few to see openings."""
-    return _find_heights(rays), messages.sparse_rays_warning(rays, min_opening_m)
+def _read_rays(
+    rays: ray_set.RaySet, min_opening_m: float
+) -> tuple[dict[str, str], witnesses.Measured]:
+    """Return `_find_heights`, and how many points are too far off to see openings there."""
+    return _find_heights(rays), messages.measure_sparse_rays(rays, min_opening_m)
 
 
 def _find_heights(rays: ray_set.RaySet) -> dict[str, str]:

@@ -59,13 +59,14 @@ def interpolate_poses(
         # what of it is lost, and not which of the clouds that are read here are damaged
         found = doubts.Doubts().add(survey.describe_damage())
         gaps = survey.describe_gaps()
+        measured = [witnesses.state_witness("days apart", len(gaps), said="; ".join(gaps))]
         edges = survey.pose_edges()
         if pose_kind.is_drifting(survey.pose_kind):
             edges, resets = _join_resets(edges, max_speed_m_s)
-            found = found.add(contradictions=resets)
+            measured.append(resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
-        still = candidates.describe_standstill(pose, covered)
+        measured.append(candidates.measure_standing(pose, covered))
         is_steady = np.ones(len(t_ns), bool)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
@@ -83,16 +84,18 @@ def interpolate_poses(
     n_covered = int(covered[chosen].sum())
     n_without = len(chosen) - n_covered
     share = n_without / len(chosen)
-    lacking = witnesses.state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
-    found = found.add(contradictions=witnesses.tell("interpolate_poses", [lacking]))
+    measured.append(
+        witnesses.state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
+    )
+    for sentence in found.damage:
+        log.log_warning(f"interpolate_poses: {sentence}")
+    found = found.add(findings=witnesses.tell("interpolate_poses", measured))
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)
     notes = found.as_notes() | {
         pose_kind.NOTE: survey.pose_kind,
         schemas.N_RECORDED: str(len(t_ns)),
     }
     tables.write_table(output, schemas.POSES, columns, notes=notes, made_of=made_of)
-    for sentence in (*found.sentences, *gaps, *still):
-        log.log_warning(f"interpolate_poses: {sentence}")
     log.log_line(
         f"interpolate_poses: {len(t_ns):,} scans, {len(chosen):,} candidates,"
         f" {n_covered:,} with poses, {n_without:,} without"
@@ -104,16 +107,12 @@ def interpolate_poses(
 
 def _join_resets(
     edges: Sequence[frame_edges.FrameEdge], max_speed_m_s: float
-) -> tuple[list[frame_edges.FrameEdge], list[str]]:
-    """Return odometry that goes on where it was reset, and a sentence that says how often."""
+) -> tuple[list[frame_edges.FrameEdge], witnesses.Measured]:
+    """Return odometry that goes on where it was reset, and how often it was."""
     joined = [edge.without_jumps(max_speed_m_s=max_speed_m_s) for edge in edges]
     n_jumps = sum(n for _, n in joined)
-    if n_jumps == 0:
-        return list(edges), []
-    return [edge for edge, _ in joined], [
-        f"the odometry jumps or is reset {n_jumps} times: how the rover moved meanwhile is taken"
-        " from the scans alone"
-    ]
+    resets = witnesses.state_witness("odometry resets", n_jumps)
+    return ([edge for edge, _ in joined] if n_jumps else list(edges)), resets
 
 
 def _log_unsteady(is_steady: BoolArray, chosen: IntArray) -> None:

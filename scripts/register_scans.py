@@ -17,6 +17,7 @@ from scanplan.registration import (
 )
 from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.constraints import neighbour_reach_m
+from scanplan.registration.misreading import Misreading
 from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, witnesses, workers
@@ -93,7 +94,7 @@ def register_scans(
             verdicts,
             is_odometry=survey.is_odometry,
             # of chunks only the points of scans that fit are kept
-            find_cause=str if chunks else partial(_find_cause, found, t_ns),
+            **({} if chunks else {"find_cause": partial(_find_cause, found, t_ns, moved)}),
         )
         # of poses that are all the same that is the cause
         measured = [still] if still.is_beyond else [still, misfit]
@@ -117,19 +118,25 @@ def register_scans(
     columns = results.constraint_columns(constraints)
     tables.write_table(edges, schemas.EDGES, columns, allow_empty=True)
     columns = results.registration_columns(survey.scan_ids, t_ns, verdicts)
-    told = doubts.read_doubts(poses, schemas.POSES).add(found.damage, spoken)
-    for sentence in told.sentences:
+    for sentence in found.damage:
         log.log_warning(f"register_scans: {sentence}")
+    told = doubts.read_doubts(poses, schemas.POSES).add(found.damage, spoken)
     tables.write_table(registered, schemas.REGISTRATION, columns, notes=told.as_notes())
 
 
-def _find_cause(found: registered_candidates.RegisteredCandidates, t_ns: IntArray) -> str:
-    """Return which reading lets scans meet that do not as they were read, in words."""
+def _find_cause(
+    found: registered_candidates.RegisteredCandidates, t_ns: IntArray, moved: FilePath | None
+) -> Misreading:
+    """Return which reading lets scans meet that do not as they were read."""
     from scanplan.registration import readings  # scipy's 0.3 s, and few scans do not fit
 
     survey = found.survey
     return readings.find_reading(
-        survey.priors, t_ns, lambda rows: list(found.read_points(rows)), planar=survey.planar
+        survey.priors,
+        t_ns,
+        lambda rows: list(found.read_points(rows)),
+        planar=survey.planar,
+        moved_at=None if moved is None else registered_candidates.read_motion(moved).at,
     )
 
 

@@ -71,13 +71,11 @@ def validate_plan(
     spoken = witnesses.tell(
         "validate_plan", survey_witnesses.measure_plan(drawn, rays, xyz_m, found)
     )
-    for sentence in spoken:
-        log.log_warning(f"validate_plan: {sentence}")
     tables.write_table(
         outputs["confidence"],
         schemas.CONFIDENCE,
         rated,
-        notes=doubts.Doubts(contradictions=tuple(spoken)).as_notes(),
+        notes=doubts.Doubts(findings=tuple(spoken)).as_notes(),
     )
     log.log_line(
         f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result};"

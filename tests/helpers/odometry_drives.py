@@ -118,7 +118,7 @@ def register_drive(recordings: Sequence[str], folder: Path, **settings: Settings
         results.pose_matrices(columns),
         results.pose_matrices(tables.read_table(file["poses"], schemas.POSES)),
         columns["kept"],
-        doubts.read_doubts(registered, schemas.REGISTRATION).sentences,
+        doubts.read_doubts(registered, schemas.REGISTRATION).contradictions,
     )
 
 

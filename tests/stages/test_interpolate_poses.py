@@ -187,4 +187,4 @@ def test_recordings_that_lie_days_apart_are_told(tmp_path, caplog, apart_s, is_t
     told = [line for line in caplog.messages if "lie far apart in time" in line]
     assert len(told) == is_told
     if told:
-        assert "y/y.bag begins 1.0 days after" in told[0] and "x/x.bag; if they" in told[0]
+        assert "y/y.bag begins 1.0 days after" in told[0] and "x/x.bag: they" in told[0]

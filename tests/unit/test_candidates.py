@@ -37,9 +37,11 @@ def test_every_nth():
 def test_a_sensor_that_stands_still_is_told(xs, is_told):
     pose = np.concatenate([poses(xs), poses([np.nan])])
     has_pose = np.array([True] * len(xs) + [False])
-    found = candidates.describe_standstill(pose, has_pose)
-    assert bool(found) == is_told
-    assert not found or (f"all {len(xs)} scans" in found[0] and "input.pose_topic" in found[0])
+    found = candidates.measure_standing(pose, has_pose)
+    assert found.is_beyond == is_told
+    assert not is_told or (
+        f"all {len(xs)} scans" in found.finding.said and "input.pose_topic" in found.finding.cause
+    )
 
 
 def test_scans_a_metre_apart_are_all_kept():

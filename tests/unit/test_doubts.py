@@ -16,11 +16,13 @@ POSE = {name: [1.0] for name in (*schemas.XYZ, *schemas.QUAT)}
 
 
 def test_what_a_table_is_told_it_hands_on(tmp_path):
-    found = doubts.Doubts().add(["half is lost"], ["walls are crossed"]).add(["half is lost"])
+    crossed = doubts.Finding("way through walls", 1.5, "walls are crossed", "doors", "look")
+    found = doubts.Doubts().add(["half is lost"], [crossed]).add(["half is lost"], [crossed])
     path = tmp_path / "motion.parquet"
     tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
     assert doubts.read_doubts(path, schemas.MOTION) == found
-    assert found.sentences == ("half is lost", "walls are crossed")
+    assert found.damage == ("half is lost",)
+    assert found.contradictions == ("walls are crossed: doors; look",)
 
 
 def test_a_table_without_doubts_has_no_note(tmp_path):
@@ -55,7 +57,7 @@ def test_scans_that_do_not_fit_where_the_sensor_is_said_to_stand_are_doubted(
     priors[3] = np.nan
     found = of_registration.measure_standstill(priors, verdicts(6 - rejected, rejected))
     assert found.is_beyond == is_doubted and found.value == rejected * is_doubted
-    assert "input.pose_topic" in found.sentence
+    assert not is_doubted or "input.pose_topic" in found.finding.cause
 
 
 def rays_at(xy_m):

@@ -1,5 +1,3 @@
-import re
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -23,19 +21,19 @@ def scan(turn):
 
 
 def test_of_a_level_room_nothing_is_said():
-    assert map_tilt.tilt_warning([scan(np.eye(3))]) == ""
-    assert map_tilt.tilt_warning([scan(turned(4, 0))]) == ""
+    assert not map_tilt.measure_tilt([scan(np.eye(3))]).is_beyond
+    assert not map_tilt.measure_tilt([scan(turned(4, 0))]).is_beyond
 
 
 def test_a_tilted_map_is_told():
-    said = map_tilt.tilt_warning([scan(turned(27, 0))])
-    assert re.search(r"2[678] degrees off the map's z.*z is up", said)
+    found = map_tilt.measure_tilt([scan(turned(27, 0))])
+    assert found.value == pytest.approx(27, abs=1.5)
+    assert found.is_beyond and "z is up" in found.finding.remedy
 
 
 def test_next_to_nothing_tells_nothing():
-    assert map_tilt.tilt_warning([]) == ""
-    assert map_tilt.tilt_warning([(np.empty((0, 3)), (0, 0, 0))]) == ""
-    assert map_tilt.tilt_warning([(np.ones((50, 3)), (0, 0, 0))]) == ""
+    nothing = ([], [(np.empty((0, 3)), (0, 0, 0))], [(np.ones((50, 3)), (0, 0, 0))])
+    assert not any(map_tilt.measure_tilt(scans).is_beyond for scans in nothing)
 
 
 @given(st.floats(10, 40), st.integers(0, 1))

@@ -234,15 +234,13 @@ class TestFreeSpace:
         told = {}
         for beams in (360, 90, 45):
             flat = laser(SENSORS[0], np.array(house_making.HOUSE, float), beams=beams)
-            told[beams] = messages.sparse_rays_warning(
+            told[beams] = messages.measure_sparse_rays(
                 ray_set.gather_rays([(0, flat)], {0: SENSORS[0]}, planar=True), 0.5
             )
-        assert told[360] == told[90] == ""
-        assert (
-            "lie 8.0 deg apart" in told[45]
-            and "up to 1.8 m away" in told[45]
-            and "n_azimuth" in told[45]
-        )
+        assert [found.is_beyond for found in told.values()] == [False, False, True]
+        finding = told[45].finding
+        assert "lie 8.0 degrees apart" in finding.said and "up to 1.8 m away" in finding.said
+        assert "n_azimuth" in finding.remedy
 
     @pytest.mark.parametrize(
         ("directions_deg", "spacing_deg"),

@@ -5,7 +5,7 @@ import pytest
 
 from scanplan.geometry import se3
 from scanplan.lab.simulation.rover import planar_poses
-from scanplan.registration import readings
+from scanplan.registration import misreading, readings
 
 ROOM_M = np.array([4.0, 3.0, 2.5])
 FLIP = np.diag([1.0, -1.0, 1.0])
@@ -37,7 +37,7 @@ def clouds():
 def named(poses, change=lambda cloud, _: cloud):
     given = [change(cloud, row) for row, cloud in enumerate(clouds())]
     return readings.find_reading(
-        poses, T_NS, lambda rows: [given[row] for row in rows], planar=False
+        poses, T_NS[: len(poses)], lambda rows: [given[row] for row in rows], planar=False
     )
 
 
@@ -70,16 +70,38 @@ def turned(degrees):
 )
 def test_the_right_reading_is_named(poses, change, word):
     found = named(poses) if change is None else named(poses, change)
-    assert word in found
+    assert word in found.cause and found.remedy
 
 
 def test_of_scans_that_meet_or_meet_in_no_reading_none_is_named():
-    assert named(TRUE) == ""
+    assert named(TRUE) is misreading.NONE_MEETS
     rng = np.random.default_rng(1)
     noise = rng.uniform(-9, 9, (20, 900, 3))
-    assert named(TRUE, lambda _, row: noise[row]) == ""
+    assert named(TRUE, lambda _, row: noise[row]) is misreading.NONE_MEETS
+    assert named(TRUE[:3]) is misreading.UNTRIED
+
+
+def test_between_scans_the_sensors_own_motion_tells_how_late_a_clock_is():
+    """Of a sensor that turns to and fro the poses of every scan say nothing of half a second."""
+    fine_s = np.arange(0, 20, 0.25)
+    way = planar_poses(
+        np.column_stack([np.interp(fine_s, [0, 20], [1, 3]), np.full(len(fine_s), 1.5)]),
+        1.2 * np.sin(2.3 * fine_s),
+    )
+    way[:, 2, 3] = 0.6
+    true, late = way[::4], np.concatenate([way[:1], way[:1], way[:-2]])
+
+    def moved_at(t_ns):
+        rows = np.round(t_ns / 0.25e9).astype(int)
+        return late[rows] if (rows >= 0).all() and (rows < len(late)).all() else None
+
+    given = [se3.transform_points(se3.invert_pose(pose), room_points()) for pose in true]
+    asked = (late[::4], T_NS, lambda rows: [given[row] for row in rows])
+    assert readings.find_reading(*asked, planar=False) is misreading.NONE_MEETS
+    found = readings.find_reading(*asked, planar=False, moved_at=moved_at)
+    assert "0.50 s later" in found.cause
 
 
 def test_a_clock_that_is_late_by_a_second_is_named():
     late = np.concatenate([TRUE[:1], TRUE[:-1]])
-    assert "1.00 s later" in named(late)
+    assert "1.00 s later" in named(late).cause

@@ -468,7 +468,7 @@ def test_the_title_block_states_the_survey():
 
 def test_a_long_value_of_the_title_block_is_written_on_two_lines():
     version = "scanplan, code 0123456789ab"
-    doubted = Doubts(damage=("cut off",), contradictions=("walls lean",))
+    doubted = Doubts(damage=("cut off",))
     sheet = composition.compose_sheet(plan(doubted=doubted), SheetFacts(version=version))
     values = {word.element: word for word in sheet.paper_words if word.element.startswith("title:")}
     software = values["title:SOFTWARE"], values["title:SOFTWARE_2"]

@@ -6,6 +6,7 @@ from helpers import floorplan_making, report_making
 from scanplan.plan import floorplan
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.report.summary import summarise_survey
+from scanplan.store import doubts
 
 
 def survey(prediction=report_making.PREDICTION):
@@ -29,8 +30,9 @@ def plan(**tables):
 
 
 def test_it_counts_what_was_found_and_names_what_is_doubtful():
-    found, _, made_of, tested = summarise_survey(plan(), survey()).splitlines()
+    verdict, found, _, made_of, tested = summarise_survey(plan(), survey()).splitlines()
     n_rooms = len(floorplan_making.rooms()["room"])
+    assert verdict.startswith("verdict  a ")
     assert found.startswith(f"found    {n_rooms} rooms, ") and "m² of floor" in found
     assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of 1,064 recorded)")
     assert tested.startswith(
@@ -46,7 +48,7 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
     doubt = np.full(n, "", object)
     p_true[[0, 1]], verify[[0, 1]], doubt[[0, 1]] = (0.4, 0.2), True, "few rays"
     rated = made | {"p_true": p_true, "verify": verify, "doubt": doubt}
-    doubtful = summarise_survey(plan(openings=rated), survey()).splitlines()[1]
+    doubtful = summarise_survey(plan(openings=rated), survey()).splitlines()[2]
     assert doubtful == (
         "doubtful 2 openings (1, 0), 1 wall (2) to verify on site (report.html says why)"
     )
@@ -57,7 +59,7 @@ def test_a_plan_whose_elements_are_not_rated_says_so():
     n = len(made["wall"])
     unrated = {"p_true": np.full(n, np.nan), "verify": np.zeros(n, bool)}
     unrated["doubt"] = np.full(n, "", object)
-    doubtful = summarise_survey(plan(walls=made | unrated), survey()).splitlines()[1]
+    doubtful = summarise_survey(plan(walls=made | unrated), survey()).splitlines()[2]
     assert doubtful.endswith("is not known, as no heights above the floor were seen")
 
 
@@ -80,3 +82,14 @@ def test_a_plan_without_doubts_says_so_and_many_are_counted_alone():
     nine |= {"room": np.arange(9), "closed": np.zeros(9, bool)}
     text = summarise_survey(plan(walls=sure, rooms=nine), survey())
     assert "doubtful 9 rooms to verify on site (report.html says why)\n" in text
+
+
+def test_what_speaks_against_all_of_it_stands_before_what_is_merely_noted():
+    jump = doubts.Finding("map jump", 9.0, "the map jumps", "it was carried", "cut it")
+    apart = doubts.Finding("days apart", 2.0, "recordings lie apart", "two states", "part them")
+    found = plan(doubted=doubts.Doubts(findings=(apart, jump)))
+    lines = {line[:9].strip(): line[9:] for line in summarise_survey(found, survey()).splitlines()}
+    assert lines["verdict"].startswith("not a plan: ")
+    assert lines["verdict"].endswith("; it was carried; cut it")
+    assert lines["doubtful"].startswith("the map jumps: it was carried; cut it; ")
+    assert lines["noted"] == "recordings lie apart: two states; part them"

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from helpers import floorplan_making
 from scanplan.registration import pose_lean
-from scanplan.stage import witnesses
+from scanplan.stage import witness_table, witnesses
 from scanplan.validation import survey_witnesses
 
 
@@ -19,19 +19,21 @@ def fields(text):
 
 def state_all(value_of):
     """Every witness with a value by its limit, and any number for what its words name."""
-    for name, known in witnesses.WITNESSES.items():
-        more = dict.fromkeys(fields(known.means + known.remedy) - {"value", "limit"}, 7)
+    for name, known in witness_table.WITNESSES.items():
+        words = known.means + known.cause + known.remedy
+        more = dict.fromkeys(fields(words) - {"value", "limit"}, 7)
         yield name, witnesses.state_witness(name, value_of(known.limit), **more)
 
 
 def test_what_is_beyond_its_limit_is_told_with_value_and_remedy():
     measured = [found for _, found in state_all(lambda limit: limit + 1)]
     told = witnesses.tell("stage", measured)
-    assert len(told) == len(witnesses.WITNESSES)
-    for sentence, found in zip(told, measured, strict=True):
-        known = witnesses.WITNESSES[found.name]
-        assert known.remedy.format(cause=7) in sentence
-        assert "{" not in sentence
+    assert len(told) == len(witness_table.WITNESSES)
+    for finding, found in zip(told, measured, strict=True):
+        known = witness_table.WITNESSES[found.name]
+        assert finding.remedy and finding.cause and finding.beyond > 1
+        assert "{" not in finding.sentence and known.gist
+        assert known.leaves in witness_table.WORTHS
 
 
 @pytest.mark.parametrize("value_of", [lambda limit: limit, lambda limit: np.nan])

@@ -10,6 +10,7 @@ import numpy as np
 from scanplan.extraction import normals
 from scanplan.extraction.segment_limits import DIAGONAL
 from scanplan.rays import sensor_frame
+from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import Array, BoolArray, FloatArray
 
 _NEAR_RAD = np.deg2rad(5)  # what normals of good surfaces scatter by: less is no tilt
@@ -23,8 +24,10 @@ def sample_scan_ids(scan_ids: list[int], most: int = 10) -> list[int]:
     return [scan_ids[i] for i in np.unique(places)]
 
 
-def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: float = 3.5) -> str:
-    """Return a warning that a map is tilted, if its surfaces show it.
+def measure_tilt(
+    scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: float = 3.5
+) -> Measured:
+    """Return how far the z of a map leans by its surfaces; not at all where too few are seen.
 
     Parameters
     ----------
@@ -33,11 +36,6 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: floa
     reach_deg : float
         Half-width of a normal's neighbourhood: one and a half times what is between the beams of a
         coarse sensor.
-
-    Returns
-    -------
-    str
-        Empty if z is up, or too little is seen.
     """
     normal: list[FloatArray] = [np.empty((0, 3))]
     weight: list[Array] = [np.empty(0)]
@@ -48,14 +46,8 @@ def tilt_warning(scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: floa
         normal.append(cells.normal[has_normal])
         weight.append(cells.count[has_normal])
     up = estimate_up_direction(np.concatenate(normal), np.concatenate(weight))
-    tilt_deg = np.rad2deg(np.arccos(min(up[2], 1.0)))
-    if tilt_deg < np.rad2deg(_NEAR_RAD):
-        return ""
-    return (
-        f"surfaces stand {tilt_deg:.0f} degrees off the map's z"
-        f" (up is {up[0]:.2f}, {up[1]:.2f}, {up[2]:.2f}), so that walls are missed;"
-        " give poses in a map whose z is up"
-    )
+    tilt_deg = float(np.rad2deg(np.arccos(min(up[2], 1.0))))
+    return state_witness("tilt", tilt_deg, up=", ".join(f"{part:.2f}" for part in up))
 
 
 def estimate_up_direction(normal: FloatArray, weight: FloatArray) -> FloatArray:

@@ -6,10 +6,11 @@ from collections.abc import Iterable, Mapping
 from scanplan.errors import StageError
 from scanplan.extraction import known_segments, map_tilt, segments
 from scanplan.extraction.extractors import EXTRACTORS, select_max_rmse_m, select_settings
-from scanplan.stage import log
+from scanplan.stage import log, witnesses
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
 from scanplan.store import schemas, tables
+from scanplan.store.doubts import NO_DOUBT, Doubts
 from scanplan.store.registered_scans import read_registered_scans
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
 
@@ -79,10 +80,9 @@ def write_survey_walls(
         settings=select_settings(method.settings, settings),
         max_rmse_m=select_max_rmse_m(method, settings),
     )
-    if not store.planar:
-        _warn_of_tilt(stage, store, sensors)
+    told = NO_DOUBT if store.planar else _tell_tilt(stage, store, sensors)
     columns = earlier.complete(wanted, found)
-    notes = known_segments.note_digests(wanted, found)
+    notes = known_segments.note_digests(wanted, found) | told.as_notes()
     tables.write_table(output, schemas.WALLS, columns, allow_empty=True, notes=notes)
     took_ms = 1e3 * (time.perf_counter() - started)
     summary = segments.summarise_segments(columns, len(wanted), took_ms)
@@ -91,11 +91,10 @@ def write_survey_walls(
     log.log_line(f"{stage}: {extractor}, {summary}{reused}")
 
 
-def _warn_of_tilt(
+def _tell_tilt(
     stage: str, store: tables.ScanStore, sensors: Mapping[int, Mapping[str, FloatArray]]
-) -> None:
-    """Log a warning if the map is tilted."""
+) -> Doubts:
+    """Return what there is to tell of a map that is tilted, and log it."""
     sample_ids = map_tilt.sample_scan_ids(store.scan_ids.tolist())
     sample = ((store.read(i), sensors[i]["sensor_xyz_m"]) for i in sample_ids)
-    if warning := map_tilt.tilt_warning(sample):
-        log.log_warning(f"{stage}: {warning}")
+    return Doubts(findings=tuple(witnesses.tell(stage, [map_tilt.measure_tilt(sample)])))

@@ -126,12 +126,8 @@ class FloorPlan:
 
     @property
     def mark(self) -> str:
-        """What every sheet of it says where all of it is in doubt; empty where nothing is."""
-        marks = {
-            "from a damaged recording": self.doubted.damage,
-            "in doubt, see summary.txt": self.doubted.contradictions,
-        }
-        return ", ".join(words for words, sentences in marks.items() if sentences)
+        """What every sheet of it says of a damaged recording; empty where none is."""
+        return "from a damaged recording" if self.doubted.damage else ""
 
     @cached_property
     def thick(self) -> BoolArray:

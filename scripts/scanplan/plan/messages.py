@@ -9,6 +9,7 @@ from scanplan.plan.planning import Plan
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
+from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.store.schemas import COLUMN
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
 
@@ -48,8 +49,8 @@ def check_plan(path: FilePath, plan: Plan, n_segments: int, n_scans: int) -> Non
         )
 
 
-def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
-    """Return a warning that rays lie too far apart for the narrowest opening.
+def measure_sparse_rays(rays: RaySet, min_opening_m: float) -> Measured:
+    """Return which share of the points is so far off that rays may miss the narrowest opening.
 
     An opening is detected by rays through it. At a distance r it is met by ``width / (r *
     spacing)`` columns of rays; two are needed, as one alone may pass beside it.
@@ -58,26 +59,15 @@ def sparse_rays_warning(rays: RaySet, min_opening_m: float) -> str:
     ----------
     rays : ray_set.RaySet
     min_opening_m : float
-
-    Returns
-    -------
-    str
-        Empty where most points are near enough.
     """
     spacings_rad = [column_spacing_rad(*way) for way in rays.ways()]
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
-        return ""
+        return state_witness("sparse rays", np.nan)
     enough_m = min_opening_m / (LEAST_OPEN_COLUMNS * spacing_rad)
-    is_far = _ranges_m(rays) > enough_m
-    if is_far.sum() <= (~is_far).sum():
-        return ""
-    return (
-        f"columns of rays lie {np.degrees(spacing_rad):.1f} deg apart: two meet an opening of"
-        f" {min_opening_m:g} m (plan.openings.min_opening_m) up to {enough_m:.1f} m away only, and"
-        f" {is_far.mean():.0%} of the points are farther; doors may be missed and rooms not be"
-        " parted; record more directions a turn (simulate.sensor.n_azimuth)"
-    )
+    share = float((_ranges_m(rays) > enough_m).mean())
+    sizes = {"spacing_deg": np.degrees(spacing_rad), "opening_m": min_opening_m}
+    return state_witness("sparse rays", share, enough_m=enough_m, **sizes)
 
 
 def summarise_plan(plan: Plan) -> str:

@@ -9,6 +9,7 @@ from scanplan.geometry import se3
 from scanplan.recordings import pose_jumps
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.stage import log
+from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.store import pose_columns as poses_in_tables
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
@@ -72,8 +73,8 @@ def choose_candidates(
     return np.array(chosen, np.int64)
 
 
-def describe_standstill(world_from_sensor: FloatArray, has_pose: BoolArray) -> list[str]:
-    """Return whether all poses are one and the same, as a sentence.
+def measure_standing(world_from_sensor: FloatArray, has_pose: BoolArray) -> Measured:
+    """Return how many scans there are if all of their poses are one and the same.
 
     Parameters
     ----------
@@ -82,11 +83,8 @@ def describe_standstill(world_from_sensor: FloatArray, has_pose: BoolArray) -> l
     """
     poses = np.asarray(world_from_sensor, float)[has_pose]
     if len(poses) < _FEWEST_TO_STAND or np.ptp(poses, axis=0).max() > _STILL:
-        return []
-    return [
-        f"the poses of all {len(poses):,} scans are the same: if the sensor stood still, only what"
-        " is seen from there is drawn; if it moved, its poses (input.pose_topic) are wrong"
-    ]
+        return state_witness("one place", 0)
+    return state_witness("one place", len(poses))
 
 
 def _has_moved(before: FloatArray, now: FloatArray, max_step_m: float, max_turn_deg: float) -> bool:

@@ -66,8 +66,7 @@ def describe_gaps(starts: Sequence[tuple[FilePath, int]]) -> list[str]:
     more = f", and {len(far) - 1} more lie more than a day after another" if far[1:] else ""
     return [
         f"recordings of one survey lie far apart in time: {later_path} begins"
-        f" {widest / timedelta(days=1):,.1f} days after {earlier_path}{more}; if they are not of"
-        " one floor in one state, give each as a dataset of its own"
+        f" {widest / timedelta(days=1):,.1f} days after {earlier_path}{more}"
     ]
 
 

@@ -178,7 +178,7 @@ class PoseChains:
         )
         if ahead_ns:
             lead = clocks.describe_lead(str(source), ahead_ns)
-            log.log_warning(f"{self._where}: {lead}; check the clocks")
+            log.log_line(f"{self._where}: {lead}")
         return t_ns - ahead_ns, receive_ns
 
     def _chain_of_transforms(self) -> list[frame_edges.FrameEdge]:

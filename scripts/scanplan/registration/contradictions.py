@@ -10,18 +10,16 @@ from scanplan.registration.batches import CandidateScans
 from scanplan.registration.drift import submaps
 from scanplan.registration.drift.odometry import measure_way
 from scanplan.registration.mapping import StepsBetween
+from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.prepared_clouds import PreparedScans
 from scanplan.registration.sequential import ScanResult
-from scanplan.stage.witnesses import WITNESSES, Measured, state_witness
+from scanplan.stage.witness_table import WITNESSES
+from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import FloatArray, IntArray
 
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
 _UNASKED = ("too_few_points", "pose_gap")
-_USUAL_CAUSES = (
-    "the clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may be"
-    " wrong"
-)
 _SUBMAP_M = 4.0  # of way, as advanced.registration.drift.submap_m
 _STATION_M = 0.5  # scans nearer to one another add next to nothing to a submap
 _SURE = 2.0  # standard deviations of a scale
@@ -47,7 +45,7 @@ def measure_misfit(
     scan_results: Sequence[ScanResult],
     *,
     is_odometry: bool = False,
-    find_cause: Callable[[], str] = str,
+    find_cause: Callable[[], Misreading] = lambda: UNTRIED,
 ) -> Measured:
     """Return which share of the scans does not fit the others at their poses.
 
@@ -58,18 +56,23 @@ def measure_misfit(
     is_odometry : bool
         Whether the poses do not know where the robot is if it is carried.
     find_cause : callable
-        Returns the cause in words, where one is found; it is asked of scans that do not fit.
+        Returns which reading lets scans meet, `UNTRIED` or `NONE_MEETS`; it is asked of scans that
+        do not fit.
     """
     asked = [result for result in scan_results if result.reason not in _UNASKED]
     n_kept = sum(result.kept for result in asked)
     n_left = len(asked) - n_kept
     # one scan alone may be of a door that closed
     share = n_left / len(asked) if n_left > 1 else 0.0
-    found = state_witness("misfit", share, n_kept=n_kept, n_asked=len(asked))
+    counts = {"n_kept": n_kept, "n_asked": len(asked)}
+    found = state_witness("misfit", share, **counts)
     if not found.is_beyond:
         return found
+    misread = find_cause()
+    if misread not in (UNTRIED, NONE_MEETS):
+        return state_witness("misread", share, **counts, **misread._asdict())
     carried = ", or the robot was carried" if is_odometry else ""
-    return found.add(cause=find_cause() or f"{_USUAL_CAUSES}{carried}")
+    return found.add(cause=f"{misread.cause}{carried}", remedy=misread.remedy)
 
 
 def measure_repeats(n_repeated: int, n_asked: int) -> Measured:

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
+from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.types import FloatArray, IntArray
 
 _PAIRS = 12  # enough for a median; a pair takes a few milliseconds a reading
@@ -21,12 +22,14 @@ _ARM_M = 3.0  # what a turn moves a wall by: walls of rooms are so far away
 _MOTION_M = (0.4, 4.0)  # of a pair: less tells readings not apart, beyond it scans share little
 _LEAST_MET = 0.5  # the right reading has 0.6 to 0.95, others 0.25 at most
 _MORE = 0.2  # than as the scans were read
-_DELAYS_S = (-1.0, -0.5, -0.25, 0.25, 0.5, 1.0)  # of clocks: nearer ones hardly show
+_DELAYS_S = (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0)  # of clocks: nearer hardly show
 _FOOT_M = 0.3048
 _STILL_M = 0.05  # poses nearer to one another say that the sensor stood
-_STILL = "by its poses the sensor stood still, by its scans not: record the poses of what moved it"
-
 ReadPoints = Callable[[IntArray], Sequence[FloatArray]]
+PosesAt = Callable[[IntArray], FloatArray | None]
+_STILL = Misreading(
+    "by its poses the sensor stood still, by its scans not", "record the poses of what moved it"
+)
 
 
 @dataclass(frozen=True)
@@ -35,81 +38,144 @@ class Reading:
 
     Attributes
     ----------
-    words : str
-        What is wrong where it is right, and what to do.
-    poses : (n, 4, 4) float64
-        As it has them.
+    wrong : Misreading
+        What is wrong where it is right, and what to do; empty words of the one that was taken.
+    poses : (k, 4, 4) float64
+        Of some scans as it has them.
     cloud : (3, 3) float64
         What it makes of clouds' points.
     """
 
-    words: str
+    wrong: Misreading
     poses: FloatArray
     cloud: FloatArray
 
 
-def list_readings(world_from_sensor: FloatArray, t_ns: IntArray) -> list[Reading]:
-    """Return the usual readings of poses (n, 4, 4) and clouds, the one that was taken first."""
-    xyz_m, quat = se3.split_pose(world_from_sensor)
+def list_readings(
+    world_from_sensor: FloatArray,
+    t_ns: IntArray,
+    rows: IntArray,
+    moved_at: PosesAt | None = None,
+) -> list[Reading]:
+    """Return the usual readings of poses and clouds, the one that was taken first.
+
+    Parameters
+    ----------
+    world_from_sensor : (n, 4, 4) float64
+        Of all scans.
+    t_ns : (n,) int64
+    rows : (k,) int
+        Of the scans that are asked for.
+    moved_at : callable, optional
+        Returns the poses at some times as the sensor's motion has them, None where it knows none:
+        between scans it is finer than their own poses.
+    """
+    poses = world_from_sensor[rows]
+    xyz_m, quat = se3.split_pose(poses)
     same = np.eye(3)
-    still = np.broadcast_to(np.eye(4), world_from_sensor.shape)
-    w_first = se3.pose_matrix(xyz_m, np.roll(quat, -1, axis=1))
+    still = np.broadcast_to(np.eye(4), poses.shape)
     found = [
-        Reading("", world_from_sensor, same),
+        Reading(Misreading("", ""), poses, same),
         Reading(
-            "the clouds are in the map already: leave out their poses, or record the sensor's own"
-            " clouds",
+            Misreading(
+                "the clouds are in the map already",
+                "leave out their poses, or record the sensor's own clouds",
+            ),
             still,
             same,
         ),
         Reading(
-            "the poses are inverted, the map as the sensor sees it: invert them",
-            se3.invert_pose(world_from_sensor),
+            Misreading("the poses are inverted, the map as the sensor sees it", "invert them"),
+            se3.invert_pose(poses),
             same,
         ),
-        Reading("the poses' quaternions begin with w: put it last", w_first, same),
+        Reading(
+            Misreading("the poses' quaternions begin with w", "put it last"),
+            se3.pose_matrix(xyz_m, np.roll(quat, -1, axis=1)),
+            same,
+        ),
     ]
-    for words, cloud in _list_mountings():
-        found.append(Reading(words, world_from_sensor, cloud))
+    for wrong, cloud in _list_mountings():
+        found.append(Reading(wrong, poses, cloud))
     for delay_s in _DELAYS_S:
-        at_ns = t_ns + int(delay_s * 1e9)
-        moved_m, turned, _, _ = se3.interpolate_poses(t_ns, xyz_m, quat, at_ns, max_gap_s=np.inf)
         by = f"{abs(delay_s):.2f} s {'later' if delay_s > 0 else 'earlier'}"
-        words = f"the stamps of poses are about {by} than those of the clouds: set both clocks"
-        found.append(Reading(words, se3.pose_matrix(moved_m, turned), same))
+        wrong = Misreading(
+            f"the stamps of poses are about {by} than those of the clouds", "set both clocks"
+        )
+        delayed = _delay_poses(world_from_sensor, t_ns, rows, int(delay_s * 1e9), moved_at)
+        found.append(Reading(wrong, delayed, same))
     return found
 
 
-def _list_mountings() -> list[tuple[str, FloatArray]]:
-    """Return what may be wrong with clouds, and by which matrix their points become right."""
-    turn = "the sensor is turned by {} degrees on its mount: state it by input.base_from_sensor"
-    # in the plane these two are one
-    mirrored = (
-        "the clouds are mirrored: a sensor that hangs upside down (state its roll of 180 degrees by"
-        " input.base_from_sensor), or a y axis that points the wrong way"
+def _delay_poses(
+    world_from_sensor: FloatArray,
+    t_ns: IntArray,
+    rows: IntArray,
+    delay_ns: int,
+    moved_at: PosesAt | None,
+) -> FloatArray:
+    """Return the poses (k, 4, 4) some time after those of some scans."""
+    at_ns = t_ns[rows] + delay_ns
+    xyz_m, quat, _, _ = se3.interpolate_poses(
+        t_ns, *se3.split_pose(world_from_sensor), at_ns, max_gap_s=np.inf
     )
-    unit = "{}: both are to be in metres"
+    delayed = se3.pose_matrix(xyz_m, quat)
+    for i, (row, then_ns) in enumerate(zip(rows.tolist(), at_ns.tolist(), strict=True)):
+        both = None if moved_at is None else moved_at(np.array([t_ns[row], then_ns]))
+        if both is not None:
+            delayed[i] = world_from_sensor[row] @ se3.invert_pose(both[0]) @ both[1]
+    return delayed
+
+
+def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
+    """Return what may be wrong with clouds, and by which matrix their points become right."""
+    # in the plane these two are one
+    mirrored = Misreading(
+        "the clouds are mirrored: a sensor that hangs upside down, or a y axis that points the"
+        " wrong way",
+        "state a roll of 180 degrees by input.base_from_sensor, or turn the axis",
+    )
+
+    def turned(by: str) -> Misreading:
+        return Misreading(
+            f"the sensor is turned by {by} degrees on its mount",
+            "state it by input.base_from_sensor",
+        )
+
+    def in_feet(which: str, other: str) -> Misreading:
+        return Misreading(f"{which} are in feet, {other} in metres", "give both in metres")
+
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     optical = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
     return [
         (mirrored, np.diag([1.0, -1.0, -1.0])),
         (mirrored, np.diag([1.0, -1.0, 1.0])),
-        (turn.format("90"), quarter),
-        (turn.format("-90"), quarter.T),
-        (turn.format("180"), np.diag([-1.0, -1.0, 1.0])),
+        (turned("90"), quarter),
+        (turned("-90"), quarter.T),
+        (turned("180"), np.diag([-1.0, -1.0, 1.0])),
         (
-            "the clouds have a camera's axes, z ahead: state it by input.base_from_sensor",
+            Misreading(
+                "the clouds have a camera's axes, z ahead", "state it by input.base_from_sensor"
+            ),
             optical,
         ),
-        (unit.format("ranges are in feet, poses in metres"), _FOOT_M * np.eye(3)),
-        (unit.format("poses are in feet, ranges in metres"), np.eye(3) / _FOOT_M),
+        (in_feet("ranges", "poses"), _FOOT_M * np.eye(3)),
+        (in_feet("poses", "ranges"), np.eye(3) / _FOOT_M),
     ]
 
 
 def find_reading(
-    world_from_sensor: FloatArray, t_ns: IntArray, read_points: ReadPoints, *, planar: bool
-) -> str:
-    """Return which reading lets scans meet, in words; nothing where none does, or the one taken.
+    world_from_sensor: FloatArray,
+    t_ns: IntArray,
+    read_points: ReadPoints,
+    *,
+    planar: bool,
+    moved_at: PosesAt | None = None,
+) -> Misreading:
+    """Return which reading lets scans meet.
+
+    `NONE_MEETS` where none does, or not clearly better than the one that was taken, `UNTRIED` where
+    the sensor hardly moved between scans.
 
     Parameters
     ----------
@@ -119,27 +185,32 @@ def find_reading(
     read_points : callable
         Returns the points (k, 3) of some rows, in the sensor's frame.
     planar : bool
+    moved_at : callable, optional
+        See `list_readings`.
     """
     known = np.flatnonzero(np.isfinite(world_from_sensor).all(axis=(1, 2)))
     first = _choose_pairs(world_from_sensor[known])
     if len(first) < _LEAST_PAIRS:
         extent_m = np.ptp(world_from_sensor[known, :3, 3], axis=0) if len(known) > 1 else np.inf
-        return _STILL if np.max(extent_m) < _STILL_M else ""
+        return _STILL if np.max(extent_m) < _STILL_M else UNTRIED
     rows = np.unique([first, first + 1])
-    clouds = dict(zip(rows.tolist(), read_points(known[rows]), strict=True))
-    thinned = {row: cloud[:: max(1, len(cloud) // _POINTS)] for row, cloud in clouds.items()}
-    readings = list_readings(world_from_sensor[known], t_ns[known])
+    clouds = list(read_points(known[rows]))
+    thinned = [cloud[:: max(1, len(cloud) // _POINTS)] for cloud in clouds]
+    readings = list_readings(world_from_sensor[known], t_ns[known], rows, moved_at)
+    places = np.searchsorted(rows, first).tolist()
     met = [
-        float(np.median([_measure_met(reading, row, clouds, thinned, planar) for row in first]))
+        float(np.median([_measure_met(reading, i, clouds, thinned, planar) for i in places]))
         for reading in readings
     ]
     best = int(np.argmax(met))
     if met[best] < max(_LEAST_MET, met[0] + _MORE):
-        return ""
-    return (
-        f"{readings[best].words} (so {met[best]:.0%} of the points of neighbouring scans meet,"
-        f" as they were read {met[0]:.0%})"
+        return NONE_MEETS
+    cause, remedy = readings[best].wrong
+    shares = (
+        f" (so {met[best]:.0%} of the points of neighbouring scans meet, as they were read"
+        f" {met[0]:.0%})"
     )
+    return Misreading(f"{cause}{shares}", remedy)
 
 
 def _choose_pairs(world_from_sensor: FloatArray) -> IntArray:
@@ -157,19 +228,19 @@ def _choose_pairs(world_from_sensor: FloatArray) -> IntArray:
 
 def _measure_met(
     reading: Reading,
-    row: int,
-    clouds: dict[int, FloatArray],
-    thinned: dict[int, FloatArray],
+    i: int,
+    clouds: Sequence[FloatArray],
+    thinned: Sequence[FloatArray],
     planar: bool,
 ) -> float:
     """Return which share of a scan's points lies on the one before."""
-    if len(clouds[row]) == 0 or len(thinned[row + 1]) == 0:
+    if len(clouds[i]) == 0 or len(thinned[i + 1]) == 0:
         return 0.0
     scale = np.cbrt(abs(np.linalg.det(reading.cloud)))
     size = 2 if planar else 3
-    moved = se3.invert_pose(reading.poses[row]) @ reading.poses[row + 1]
-    target_m = clouds[row] @ reading.cloud.T
-    source_m = se3.transform_points(moved, thinned[row + 1] @ reading.cloud.T)
+    moved = se3.invert_pose(reading.poses[i]) @ reading.poses[i + 1]
+    target_m = clouds[i] @ reading.cloud.T
+    source_m = se3.transform_points(moved, thinned[i + 1] @ reading.cloud.T)
     # in a smaller unit points are nearer, but for their noise
     near_m = _NEAR_M * np.sqrt(scale)
     apart_m, _ = KDTree(target_m[:, :size]).query(source_m[:, :size], distance_upper_bound=near_m)

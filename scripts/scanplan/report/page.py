@@ -21,7 +21,7 @@ from scanplan.report.plan_view import growth, next_visit, plan_svg
 from scanplan.report.point_image import PointImage
 from scanplan.store import registered_scans
 from scanplan.types import FloatArray, Settings
-from scanplan.validation import doubts
+from scanplan.validation import doubts, verdict
 
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
 _CAPTIONS = {
@@ -83,12 +83,14 @@ def report_page(
         sources,
         "page.html.j2",
         name=plan.name,
+        verdict=verdict.judge_plan(plan),
         summary=wording.plan_sentence(plan, survey),
         prediction=wording.prediction_sentence(survey.prediction),
         contradictions=[
             *plan.doubted.damage,
             *wording.list_contradictions(plan),
             *doubts.list_unrated(plan),
+            *wording.list_notes(plan),
         ],
         facts=wording.head_figures(plan, survey),
         links=result_links.link_results(run.results),

@@ -10,6 +10,7 @@ from scanplan.plan import floorplan
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
 from scanplan.validation.doubts import list_doubts, list_unrated
+from scanplan.validation.verdict import judge_plan
 
 
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
@@ -46,10 +47,13 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f" ({n_candidates:,} candidates of {survey.n_recorded:,} recorded)"
     )
     damage = plan.doubted.damage
+    notes = wording.list_notes(plan)
     lines = [
+        ("verdict", judge_plan(plan).line),
         *([("damaged", "; ".join(damage))] if damage else []),
         ("found", found),
         ("doubtful", "; ".join(doubts) or "nothing that the plan marks"),
+        *([("noted", "; ".join(notes))] if notes else []),
         ("made of", used),
         ("tested", wording.prediction_sentence(survey.prediction)),
     ]

@@ -8,8 +8,10 @@ from scanplan.plan import floorplan
 from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
+from scanplan.stage.witnesses import rank_findings
 from scanplan.types import Columns
 from scanplan.validation import doubts
+from scanplan.validation.verdict import is_note
 
 _OBJECTIVES = {"wall_length": ("wall shown", "m"), "visibility": ("free space seen", "m²")}
 
@@ -43,11 +45,20 @@ def prediction_sentence(prediction: PredictionFacts) -> str:
 
 
 def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
-    """Return what speaks against all of a plan, and corrections not carried out, in sentences."""
+    """Return what speaks against all of a plan, and corrections not carried out, in sentences.
+
+    The likeliest cause first.
+    """
+    findings = [found for found in plan.doubted.findings if not is_note(found)]
     return [
-        *plan.doubted.contradictions,
+        *(found.sentence for found in rank_findings(findings)),
         *(f"a correction by hand has no effect: {why}" for why in plan.unmatched_corrections),
     ]
+
+
+def list_notes(plan: floorplan.FloorPlan) -> list[str]:
+    """Return what else stages warned of, in sentences."""
+    return [found.sentence for found in plan.doubted.findings if is_note(found)]
 
 
 def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[str, str]]:

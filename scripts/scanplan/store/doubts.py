@@ -1,18 +1,44 @@
 """What speaks against the results of a dataset, handed from table to table beside their rows.
 
-A stage that finds something which cannot be says so in a sentence; each that follows hands on what
-it was told. The summary, the report and the drawn sheet show all of it.
+A stage that finds something which cannot be says so; each that follows hands on what it was told.
+The summary, the report and the drawn sheet show all of it.
 """
 
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath
 
 _NOTE = "doubts"
+
+
+class Finding(NamedTuple):
+    """What a survey has of a witness beyond its limit.
+
+    Attributes
+    ----------
+    witness : str
+        Its name, of `witnesses.WITNESSES`.
+    beyond : float
+        How many times the limit it has.
+    said, cause, remedy : str
+        What was found, why it is likely so, and what to do.
+    """
+
+    witness: str
+    beyond: float
+    said: str
+    cause: str
+    remedy: str
+
+    @property
+    def sentence(self) -> str:
+        """All of it."""
+        return f"{self.said}: {self.cause}; {self.remedy}"
 
 
 @dataclass(frozen=True)
@@ -23,35 +49,36 @@ class Doubts:
     ----------
     damage : tuple of str
         What of the recordings could not be read.
-    contradictions : tuple of str
-        What cannot be if units, mounting and clocks were as the recordings say.
+    findings : tuple of Finding
+        What cannot be if units, mounting and clocks were as the recordings say, and what else a
+        reader of the plan has to know.
     """
 
     damage: tuple[str, ...] = ()
-    contradictions: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
     @property
-    def sentences(self) -> tuple[str, ...]:
-        """All of them."""
-        return (*self.damage, *self.contradictions)
+    def contradictions(self) -> tuple[str, ...]:
+        """The findings in sentences."""
+        return tuple(found.sentence for found in self.findings)
 
     def __bool__(self) -> bool:
-        return bool(self.sentences)
+        return bool(self.damage or self.findings)
 
-    def add(self, damage: Sequence[str] = (), contradictions: Sequence[str] = ()) -> "Doubts":
-        """Return these and further ones, each sentence once."""
+    def add(self, damage: Sequence[str] = (), findings: Sequence[Finding] = ()) -> "Doubts":
+        """Return these and further ones, each once."""
         return Doubts(
             tuple(dict.fromkeys((*self.damage, *damage))),
-            tuple(dict.fromkeys((*self.contradictions, *contradictions))),
+            tuple(dict.fromkeys((*self.findings, *findings))),
         )
 
     def join(self, others: "Doubts") -> "Doubts":
-        """Return these and others, each sentence once."""
-        return self.add(others.damage, others.contradictions)
+        """Return these and others, each once."""
+        return self.add(others.damage, others.findings)
 
     def as_notes(self) -> dict[str, str]:
         """Return the notes of a table that say so; none where there is no doubt."""
-        return {_NOTE: json.dumps([self.damage, self.contradictions])} if self else {}
+        return {_NOTE: json.dumps([self.damage, self.findings])} if self else {}
 
 
 NO_DOUBT = Doubts()
@@ -69,9 +96,10 @@ def read_doubts(path: FilePath, schema: schemas.Schema) -> Doubts:
     if not text:
         return Doubts()
     try:
-        damage, contradictions = json.loads(text)
-    except ValueError:
+        damage, findings = json.loads(text)
+        found = tuple(Finding(*each) for each in findings)
+    except (ValueError, TypeError):
         raise StageError(
             f"{path}: damaged (its doubts are no list); delete it and run again"
         ) from (None)
-    return Doubts(tuple(damage), tuple(contradictions))
+    return Doubts(tuple(damage), found)

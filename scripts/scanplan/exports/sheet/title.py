@@ -21,9 +21,11 @@ from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_doubts
+from scanplan.validation.verdict import Verdict, judge_plan
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
+_HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Frame", f"map, {turn}; north unknown", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
+        [("Verdict", _state_verdict(judge_plan(plan)), 3)],
     ]
     height = (y1 - y0) / len(rows)
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
@@ -121,9 +124,19 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             if x > x0:
                 yield _rule(x, top, x, top - height)
             yield _word("note", head, x + Paper.GAP, top - height / 2, Letters.SMALL)
-            ends = (x + 24.0, x + width - Paper.GAP)
+            ends = (x + _HEAD_MM, x + width - Paper.GAP)
             yield from _draw_value(head, clean_text(value), ends, top - height / 2)
             x += width
+
+
+def _state_verdict(verdict: Verdict) -> str:
+    """Return as much of a verdict as two lines of the title block hold, the remedy before why."""
+    width_mm = 3 * Paper.COLUMN - _HEAD_MM - Paper.GAP
+    known = [verdict.line, f"{verdict.head}; {verdict.remedy}"] if verdict.remedy else []
+    otherwise = f"{verdict.head}; see summary.txt" if known else verdict.head
+    # what is cut off ends in an ellipsis
+    fitting = (t for t in known if not wrap_text(t, Letters.SMALL, width_mm)[-1].endswith("…"))
+    return next(fitting, otherwise)
 
 
 def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:

@@ -99,7 +99,7 @@ def read_odometry(moved: FilePath, t_ns: IntArray) -> mapping.StepsBetween | Non
     callable or None
         See `mapping.optimise_map`; None where the poses alone say how the sensor moved.
     """
-    motion = _read_motion(moved)
+    motion = read_motion(moved)
     if motion.of_poses:
         return None
     return lambda rows: motion.steps(t_ns[rows])
@@ -152,7 +152,7 @@ def register_recorded(
     chunk : str, optional
         Which batches, see `batches.cut_survey`; by default all.
     """
-    motion = None if moved is None else _read_motion(moved)
+    motion = None if moved is None else read_motion(moved)
     with open_survey(recordings, **reading, motion=motion) as opened:
         survey = read_candidates(poses, planar=opened.planar)
         n_candidates = len(survey.scan_ids)
@@ -204,7 +204,8 @@ class _CountedScans:
             yield scan
 
 
-def _read_motion(moved: FilePath) -> trajectory.SensorMotion:
+def read_motion(moved: FilePath) -> trajectory.SensorMotion:
+    """Return how the sensor moved, of motion.parquet."""
     of_poses = json.loads(tables.read_note(moved, schemas.MOTION, schemas.OF_POSES) or "true")
     columns = tables.read_table(moved, schemas.MOTION)
     return trajectory.motion_from_columns(columns, of_poses=of_poses)

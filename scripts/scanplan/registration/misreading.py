@@ -1,0 +1,25 @@
+"""What was wrong with how poses or clouds were read, and what to do."""
+
+from typing import NamedTuple
+
+
+class Misreading(NamedTuple):
+    """Cause and remedy, as the sentence of the witness `misread` has them."""
+
+    cause: str
+    remedy: str
+
+
+UNTRIED = Misreading(
+    "the clock of the poses, the mounting (input.base_from_sensor) or the unit of ranges may be"
+    " wrong",
+    "check them",
+)
+"""Where no reading was tried."""
+NONE_MEETS = Misreading(
+    "no other unit, clock, mounting or order of the poses lets them meet, so the poses themselves"
+    " err by more than scans can mend",
+    "record a localiser that keeps to its map, or drive more slowly; of a drive that was put"
+    " together make each part a dataset of its own",
+)
+"""Where all were, and scans meet in none."""
