@@ -51,7 +51,10 @@ def assemble_plan(
     count = len(chosen_ids)
     scan_ids = np.sort(chosen_ids)
     is_used = np.isin(observed["scan_id"], scan_ids)
-    messages.check_segments(walls, observed, is_used, count)
+    earlier = doubts.read_doubts(registration, schemas.REGISTRATION).join(
+        doubts.read_doubts(walls, schemas.WALLS)
+    )
+    messages.check_segments(walls, observed, is_used, count, earlier.findings)
     segments = {column: values[is_used] for column, values in observed.items()}
     store = tables.ScanStore(scans)
     registered = registered_scans.read_registered_scans(registration, store)
@@ -83,7 +86,7 @@ def assemble_plan(
             find_seen=find_seen,
             threads=threads,
         )
-    messages.check_plan(walls, plan, is_used.sum(), count)
+    messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)
     heights_m, sparse = wait_for_rays()
     drawn = FloorPlan(
         name="",
@@ -92,12 +95,15 @@ def assemble_plan(
         ceiling_z_m=float(heights_m["ceiling_z_m"]),
     )
     track_m = poses[np.argsort(registered.t_ns), :2, 3]
-    measured = [sparse, *contradictions.measure_drawn_walls(drawn, rays, track_m)]
-    found = (
-        doubts.read_doubts(registration, schemas.REGISTRATION)
-        .join(doubts.read_doubts(walls, schemas.WALLS))
-        .add(findings=witnesses.tell("assemble_plan", measured))
-    )
+    limits = planning.make_plan_settings(**settings)
+    measured = [
+        sparse,
+        contradictions.measure_range_offset(
+            rays, segments, limits.ranges, limits.reading.band_m, poses[rows, :3, 2]
+        ),
+        *contradictions.measure_drawn_walls(drawn, rays, track_m),
+    ]
+    found = earlier.add(findings=witnesses.tell("assemble_plan", measured))
     for name, schema in planning.TABLES.items():
         notes = {**heights_m, **found.as_notes()} if name == "free" else None
         columns = getattr(plan, name)

@@ -99,6 +99,8 @@ def register_scans(
         # of poses that are all the same that is the cause
         measured = [still] if still.is_beyond else [still, misfit]
         measured.append(contradictions.measure_repeats(found.n_repeated, len(survey.scan_ids)))
+        some = contradictions.choose_some(kept)
+        measured.append(contradictions.measure_ranges(found.read_points(some)))
         if constraints is not None:
             measured += constraints.witnesses
         if constraints is not None and limits.graph.optimise and not survey.is_odometry:

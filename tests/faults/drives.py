@@ -30,6 +30,7 @@ _WAY = [
 ]
 STOREYS = {
     "rooms": (_WALLS, _DOORS, _WINDOWS, _WAY),
+    "rooms again": (_WALLS, _DOORS, _WINDOWS, _WAY[::-1]),
     "storey above": (
         [(0.24, _OUTER), (0.12, [(3.9, 0), (3.9, 7.1)]), (0.12, [(3.9, 3.2), (10.4, 3.2)])],
         [(0.9, (3.9, 1.6)), (0.9, (6.2, 3.2))],

@@ -61,6 +61,17 @@ def scale_ranges(drive, scale):
     return replace(drive, clouds=[np.asarray(scale * cloud) for cloud in drive.clouds])
 
 
+def offset_ranges(drive, offset_m):
+    """Return a drive whose ranges are too long or too short by a constant."""
+
+    def moved(cloud):
+        range_m = np.linalg.norm(cloud, axis=1, keepdims=True)
+        known_m = np.where(range_m > 0, range_m, 1.0)
+        return np.asarray(cloud * np.maximum(range_m + offset_m, 0.0) / known_m)
+
+    return replace(drive, clouds=[moved(cloud) for cloud in drive.clouds])
+
+
 def scale_poses(drive, scale):
     """Return a drive whose poses, odometry and mounting are in another unit."""
 
@@ -220,6 +231,8 @@ _OF_EACH = {
     "ranges 5 % short, no odometry": lambda drive: hide_odometry(scale_ranges(drive, 0.95)),
     "ranges 4 % long": partial(scale_ranges, scale=1.04),
     "ranges 10 % short": partial(scale_ranges, scale=0.9),
+    "ranges 0.15 m too long": partial(offset_ranges, offset_m=0.15),
+    "ranges 0.15 m too short": partial(offset_ranges, offset_m=-0.15),
     "all in feet": partial(scale_both, scale=1 / FOOT_M),
     "ranges in feet": partial(scale_ranges, scale=1 / FOOT_M),
     "poses in feet": partial(scale_poses, scale=1 / FOOT_M),
@@ -259,10 +272,18 @@ _SPATIAL_ONLY = {
     "axes of map and clouds left-handed": lambda drive: flip_map(drive, 1, -1, 1),
 }
 _OF_MORE = {
-    "second bag 3 m and 20 degrees off": lambda d: follow(d["rooms"], d["rooms"], motion(3, 0, 20)),
-    "second bag 1 m and 5 degrees off": lambda d: follow(d["rooms"], d["rooms"], motion(1, 0, 5)),
+    "second bag 3 m and 20 degrees off": lambda d: follow(
+        d["rooms"], d["rooms again"], motion(3, 0, 20)
+    ),
+    "second bag 1 m and 5 degrees off": lambda d: follow(
+        d["rooms"], d["rooms again"], motion(1, 0, 5)
+    ),
     "second bag 3 m and 20 degrees off, no odometry": lambda d: [
-        hide_odometry(drive) for drive in follow(d["rooms"], d["rooms"], motion(3, 0, 20))
+        hide_odometry(drive) for drive in follow(d["rooms"], d["rooms again"], motion(3, 0, 20))
+    ],
+    "second bag beside the first": lambda d: follow(d["rooms"], d["rooms again"], motion(30)),
+    "second bag beside the first, no odometry": lambda d: [
+        hide_odometry(drive) for drive in follow(d["rooms"], d["rooms again"], motion(30))
     ],
     "two storeys on one another": lambda d: join(*follow(d["rooms"], d["storey above"])),
     "two storeys on one another, no odometry": lambda d: hide_odometry(

@@ -36,6 +36,7 @@ def try_lies(folder, tally):
         planar = sensor == "in the plane"
         driven = {
             "rooms": drives.drive_through(place / "rooms", settings=settings),
+            "rooms again": drives.drive_through(place / "again", "rooms again", settings=settings),
             "storey above": drives.drive_through(
                 place / "above", "storey above", settings=settings
             ),

@@ -133,6 +133,7 @@ def test_a_map_that_jumps_is_told_where_odometry_goes_on(run, off_m):
         [False, True] if off_m else []
     )
     assert not off_m or "scans fit one another" in told[0]
+    assert not off_m or "set input.pose_topic to the odometry's" in told[1]
 
 
 def test_scans_without_points_are_named_and_left_out(run):

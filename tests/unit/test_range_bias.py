@@ -149,3 +149,20 @@ def test_what_is_not_asked_for_or_not_seen_is_none():
     assert not estimated(found, {name: values[:0] for name, values in segments().items()}).any()
     nowhere = wall_making.walls([(20, 0, 30, 0)], scan_id=[0])
     assert not estimated(found, nowhere).any()
+
+
+@pytest.mark.parametrize("offset_m", [0.0, 0.15, -0.15])
+def test_what_all_ranges_are_off_by_is_measured_whatever_a_sensor_may_have(offset_m):
+    found = looked(np.full(len(BEAMS), offset_m))
+    limits = (SETTINGS.max_incidence_deg, 0.2, PLUMB)
+    median_m, sure_m = range_bias.measure_common_bias(found, segments(), *limits)
+    assert median_m == pytest.approx(offset_m, abs=0.003)
+    assert sure_m == pytest.approx(abs(offset_m), abs=0.003)
+
+
+def test_a_scanner_that_saw_few_walls_tells_no_offset():
+    few = [(0, 0, 6, 0), (6, 0, 6, 4)]
+    scans = [(0, vlp16(SENSORS[0], np.array(few, float), columns=900))]
+    found = ray_set.gather_rays(scans, {0: SENSORS[0]}, planar=False)
+    table = {name: values[:2] for name, values in segments(few).items()}
+    assert np.isnan(range_bias.measure_common_bias(found, table, 60.0, 0.2, PLUMB[:1])).all()

@@ -82,8 +82,18 @@ def test_rooms_laid_over_one_another_are_told_as_a_fold():
     other, moved = folds.measure_folds(folded, poses, way_m)
     assert other.is_beyond and other.more["n_places"] == 1 and not moved.is_beyond
     assert other.name == "drifting other place"
-    (other,) = folds.measure_folds(folded, poses, way_m, drifts=False)
+    t_ns = np.array([0, 30, 80]) * 10**9
+    (other,) = folds.measure_folds(folded, poses, way_m, drifts=False, t_ns=t_ns)
     assert other.is_beyond and other.name == "other place"
+
+
+def test_when_the_map_changed_is_told():
+    """Six passes through one room; from the fourth on it is another one."""
+    poses = planar_poses(np.zeros((6, 2)), np.zeros(6))
+    way_m, t_ns = 20.0 * np.arange(6), 100 * 10**9 * np.arange(6)
+    maps = [submap(room(6, 6) if i < 3 else room(3, 3), i) for i in range(6)]
+    (other,) = folds.measure_folds(maps, poses, way_m, drifts=False, t_ns=t_ns)
+    assert other.is_beyond and other.more["after_s"] == 200.0
 
 
 def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():

@@ -32,13 +32,19 @@ def test_points_of_one_motion_pass_with_errors_of_hand_and_projection(turn, shif
 @pytest.mark.parametrize(
     ("world_of", "said"),
     [
-        (lambda z: 1000 * z, r"entry 1: lies 13\.6015 m from entry 4 by `at`, 13601\.5 m by"),
-        (lambda z: z / 1000, r"by `at`, 0\.0136015 m by `world`; they may differ by 1\.3 m"),
-        (lambda z: z / 0.3048, "they may differ by"),
-        (lambda z: 5e5 + 0 * z, "by `at`, 0 m by `world`"),
-        (lambda z: z + (5e4 if z == 12 + 1j else 0), "50012 m by `world`"),
-        (lambda z: z.conjugate(), r"entry 2: lies to the left .*; give `world` as \[east, north\]"),
+        (lambda z: 1000 * z, "`world` seems to be in millimetres: give both in metres"),
+        (lambda z: z / 1000 + 7, "`at` seems to be in millimetres: give both in metres"),
+        (lambda z: 1j * z / 0.3048, "`world` seems to be in feet"),
+        (lambda z: 1.7 * z, r"distances by `world` are 1\.7 times"),
+        (lambda z: 5e5 + 0 * z, "measure them again"),
+        (lambda z: z + (5e4 if z == 12 + 1j else 0), "agree without entry 2: measure that again"),
+        (lambda z: z + (9 if z == 0 else 0), "agree without entry 1: .* or leave it out"),
+        (lambda z: z.conjugate(), r"exchanged: give `world` as \[east, north\]"),
         (lambda z: complex(z.imag, z.real), r"give `world` as \[east, north\]"),
+        (
+            lambda z: 100 * complex(z.imag, z.real),
+            r"\[east, north\]; besides `world` seems to be in centimetres",
+        ),
     ],
 )
 def test_points_that_disagree_are_told(world_of, said):
@@ -52,6 +58,21 @@ def test_points_at_one_place_are_told(places):
         StageError, match=r"give no direction; give two that are at least 2 m apart"
     ):
         check(places, lambda z: z)
+
+
+@given(st.integers(0, 3), st.floats(4, 1e4), st.floats(-3.2, 3.2))
+def test_the_one_point_that_is_off_is_named_and_without_it_they_pass(which, off_m, turn):
+    """The remedy of the message, carried out."""
+    off = [off_m * cmath.exp(1j * turn) if i == which else 0 for i in range(4)]
+    errors = iter(off)
+    with pytest.raises(StageError, match=f"agree without entry {which + 1}:"):
+        check(PLACES, lambda z: z + next(errors))
+    check([place for i, place in enumerate(PLACES) if i != which], lambda z: z)
+
+
+def test_the_residual_of_each_point_is_told():
+    with pytest.raises(StageError, match=r"1: 2\.431 m, 2: 4\.924 m, 3: 1\.324 m, 4: 1\.403 m"):
+        check(PLACES, lambda z: z + (7 if z == 12 + 1j else 0))
 
 
 def test_points_on_one_line_pass():

@@ -180,3 +180,35 @@ def test_a_base_that_two_localisers_place_is_still_the_base_of_the_mount():
         [moving("map", "base"), moving("mocap", "base"), still("base", "lidar")]
     )
     assert tree.mount_root("lidar", "map") == "base"
+
+
+def test_a_mounting_that_is_broadcast_over_two_chains_is_one():
+    """A driver's tf and the robot's description, equal to a micrometre."""
+    robot = [moving("odom", "base"), still("base", "mount", (1, 0, 0), QUARTER)]
+    over_mount = still("mount", "laser", (2, 0, 0))
+    direct = still("base", "laser", (1, 2.000001, 0), QUARTER)
+    tree = tf_tree.FrameTree([*robot, over_mount, direct])
+    assert names(tree.path("odom", "laser")) == [("odom", "base"), ("base", "laser")]
+    assert tree.mount_root("laser", "map") == "base"
+
+
+@pytest.mark.parametrize(
+    "direct",
+    [
+        still("base", "laser", (1, 2.01, 0), QUARTER),
+        still("base", "laser", (1, 2, 0)),
+        still("elsewhere", "laser", (1, 2, 0), QUARTER),
+        moving("base", "laser"),
+    ],
+)
+def test_chains_that_do_not_agree_are_told(direct):
+    robot = [moving("odom", "base"), still("base", "mount", (1, 0, 0), QUARTER)]
+    tree = tf_tree.FrameTree([*robot, still("mount", "laser", (2, 0, 0)), direct])
+    with pytest.raises(StageError, match=r"laser hangs on .*base_from_sensor"):
+        tree.path("odom", "laser")
+
+
+def test_two_chains_in_a_cycle_end():
+    tree = tf_tree.FrameTree([still("a", "x"), still("b", "x"), still("x", "a"), still("x", "b")])
+    with pytest.raises(StageError, match="x"):
+        list(tree.up("x"))

@@ -1,5 +1,7 @@
 """Log lines about a plan, and errors where there is none."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from scanplan.errors import StageError
@@ -9,12 +11,19 @@ from scanplan.plan.planning import Plan
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
-from scanplan.stage.witnesses import Measured, state_witness
+from scanplan.stage.witnesses import Measured, rank_findings, state_witness
+from scanplan.store.doubts import Finding
 from scanplan.store.schemas import COLUMN
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
 
 
-def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: int) -> None:
+def check_segments(
+    path: FilePath,
+    segments: Columns,
+    used: BoolArray,
+    n_scans: int,
+    findings: Sequence[Finding] = (),
+) -> None:
     """Raise StageError if a table of wall segments has none to use, or wrong numbers.
 
     Parameters
@@ -27,11 +36,14 @@ def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: 
         Rows of the chosen scans.
     n_scans : int
         Number of the chosen scans.
+    findings : sequence of doubts.Finding
+        What speaks against the survey: the likeliest cause of it is why there is none.
     """
     if not used.any():
+        remedy = "take more scans (selection.stop) or loosen the wall extractor (walls)"
         raise StageError(
-            f"{path}: no wall in the first {n_scans} scans, at least 1 needed; take more scans"
-            " (selection.stop) or loosen the wall extractor (walls)"
+            f"{path}: no wall in the first {n_scans} scans, at least 1 needed;"
+            f" {_explain(findings) or remedy}"
         )
     n_wrong = sum(int((~np.isfinite(values[used])).sum()) for values in segments.values())
     if n_wrong:
@@ -40,13 +52,25 @@ def check_segments(path: FilePath, segments: Columns, used: BoolArray, n_scans: 
         )
 
 
-def check_plan(path: FilePath, plan: Plan, n_segments: int, n_scans: int) -> None:
-    """Raise StageError if a plan has no wall."""
+def check_plan(
+    path: FilePath,
+    plan: Plan,
+    n_segments: int,
+    n_scans: int,
+    findings: Sequence[Finding] = (),
+) -> None:
+    """Raise StageError if a plan has no wall, with the likeliest cause as in `check_segments`."""
     if len(plan.walls["wall"]) == 0:
+        remedy = "lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
         raise StageError(
             f"{path}: none of {n_segments} wall segments of {n_scans} scans is supported enough to"
-            " be drawn; lower plan.merge min_length_m, min_points_per_m, min_scans or lone_length_m"
+            f" be drawn; {_explain(findings) or remedy}"
         )
+
+
+def _explain(findings: Sequence[Finding]) -> str:
+    """Return the likeliest cause of all that was found, and its remedy; empty without any."""
+    return rank_findings(findings)[0].sentence if findings else ""
 
 
 def measure_sparse_rays(rays: RaySet, min_opening_m: float) -> Measured:

@@ -1,13 +1,15 @@
 """Reference points held against one another: whether one rigid motion can lay the map onto them.
 
+Where none can, the usual mistakes are tried: axes exchanged, other units, one point that is off.
+
 Standard library only: this runs while the workflow is being parsed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from scanplan.errors import StageError
+from scanplan.errors import MOST_NAMED, StageError
 
 Place = tuple[float, float]
 
@@ -18,12 +20,14 @@ _MOST_OFF_M = 1.0
 satellites indoors."""
 _MOST_OFF_SHARE = 0.02
 """The same, as a share of the distance: maps drift, and projections stretch by a thousandth."""
+_UNITS = {1000.0: "millimetres", 100.0: "centimetres", 1 / 0.3048: "feet", 1 / 0.0254: "inches"}
+"""How many of a metre."""
+_NEAR_UNIT = 0.03
+"""Of a scale, relative: places are off by as much of what lies between them."""
 
 
 def check_points(entries: Sequence[str], at_m: Sequence[Place], world_m: Sequence[Place]) -> None:
     """Refuse reference points that disagree, or that give no direction.
-
-    All are held against two, the first and the one farthest from it.
 
     Parameters
     ----------
@@ -35,7 +39,7 @@ def check_points(entries: Sequence[str], at_m: Sequence[Place], world_m: Sequenc
     Raises
     ------
     StageError
-        Naming the entry, the distances and the limit.
+        Naming the entry, how far it is off, the limit, and what is wrong with them.
     """
     inside_m = [complex(*place) for place in at_m]
     outside_m = [complex(*place) for place in world_m]
@@ -45,28 +49,106 @@ def check_points(entries: Sequence[str], at_m: Sequence[Place], world_m: Sequenc
         fault = f"all reference points lie within {apart_m[far]:.2g} m of one another"
         remedy = f"give two that are at least {_LEAST_APART_M:g} m apart, better as far as can be"
         raise StageError(f"{entries[far]}: {fault} and give no direction; {remedy}")
-    for i, entry in enumerate(entries):
-        for base in (0, far):
-            in_map_m = abs(inside_m[i] - inside_m[base])
-            in_world_m = abs(outside_m[i] - outside_m[base])
-            most_m = _most_off_m(in_map_m)
-            if abs(in_map_m - in_world_m) > most_m:
-                other = entries[base].rpartition(": ")[2]
-                fault = f"lies {in_map_m:.6g} m from {other} by `at`, {in_world_m:.6g} m by `world`"
-                remedy = f"they may differ by {most_m:.1f} m; measure again, both in metres"
-                raise StageError(f"{entry}: {fault}; {remedy}")
-        left_m, world_left_m = (_left_m(places, i, far) for places in (inside_m, outside_m))
-        if left_m * world_left_m < 0 and abs(left_m - world_left_m) > 2 * _most_off_m(apart_m[far]):
-            sides = "lies to the left of others by `at` and to the right by `world`, or the reverse"
-            raise StageError(f"{entry}: {sides}; give `world` as [east, north]")
+    most_m = _most_off_m(inside_m)
+    off_m = measure_off_m(inside_m, outside_m)
+    if max(off_m) <= most_m:
+        return
+    worst = off_m.index(max(off_m))
+    fault = (
+        f"lies {off_m[worst]:.6g} m from where a rigid motion lays the reference points (by entry:"
+        f" {_list_off(entries, off_m)}; at most {most_m:.1f} m)"
+    )
+    raise StageError(f"{entries[worst]}: {fault}; {_explain(entries, inside_m, outside_m)}")
 
 
-def _most_off_m(apart_m: float) -> float:
-    return _MOST_OFF_M + _MOST_OFF_SHARE * apart_m
+def measure_off_m(
+    inside_m: Sequence[complex], outside_m: Sequence[complex], scale: float = 1.0
+) -> list[float]:
+    """Return how far each point lies from where the best rigid motion lays it.
+
+    Parameters
+    ----------
+    inside_m, outside_m : (n,) complex
+        The same points in the map and outside, x or east the real part.
+    scale : float
+        That the map is enlarged by before.
+    """
+    middle_m, world_m = (sum(places) / len(places) for places in (inside_m, outside_m))
+    inner = [scale * (place - middle_m) for place in inside_m]
+    outer = [place - world_m for place in outside_m]
+    turn = sum(a.conjugate() * b for a, b in zip(inner, outer, strict=True))
+    turn = turn / abs(turn) if turn else 1.0
+    return [abs(b - turn * a) for a, b in zip(inner, outer, strict=True)]
 
 
-def _left_m(places_m: Sequence[complex], i: int, far: int) -> float:
-    """Return how far a place lies to the left of the line from the first to the farthest."""
-    along = places_m[far] - places_m[0]
-    across = (places_m[i] - places_m[0]) * along.conjugate()
-    return across.imag / abs(along)
+def _explain(
+    entries: Sequence[str], inside_m: Sequence[complex], outside_m: Sequence[complex]
+) -> str:
+    """Return which usual mistake the points are laid onto one another without, and the remedy."""
+    most_m = _most_off_m(inside_m)
+
+    def fits(change: Callable[[complex], complex], scale: float = 1.0) -> bool:
+        off_m = measure_off_m(inside_m, [change(place) for place in outside_m], scale)
+        return max(off_m) <= scale * most_m
+
+    exchanged = "east and north are exchanged: give `world` as [east, north]"
+    if fits(_exchange):
+        return exchanged
+    scale = _spread_m(outside_m) / _spread_m(inside_m)
+    if scale > 0 and fits(_keep, scale):
+        return f"{_name_scale(scale)}: give both in metres"
+    if scale > 0 and fits(_exchange, scale):
+        return f"{exchanged}; besides {_name_scale(scale)}: give both in metres"
+    others = _find_outliers(inside_m, outside_m)
+    if len(others) == 1:
+        left_out = entries[others[0]].rpartition(": ")[2]
+        return f"the others agree without {left_out}: measure that again, or leave it out"
+    return "measure them again, both in metres"
+
+
+def _find_outliers(inside_m: Sequence[complex], outside_m: Sequence[complex]) -> list[int]:
+    """Return the points without which the others agree; of three any two might."""
+    found = []
+    for i in range(len(inside_m)):
+        inner, outer = ([*p[:i], *p[i + 1 :]] for p in (inside_m, outside_m))
+        if _spread_m(inner) > 0 and max(measure_off_m(inner, outer)) <= _most_off_m(inner):
+            found.append(i)
+    return found
+
+
+def _name_scale(scale: float) -> str:
+    """Return in words how much longer ways are by `world` than by `at`."""
+    for many, unit in _UNITS.items():
+        for which, of in (("world", many), ("at", 1 / many)):
+            if abs(scale / of - 1) <= _NEAR_UNIT:
+                return f"`{which}` seems to be in {unit}"
+    return f"all distances by `world` are {scale:.4g} times those by `at`"
+
+
+def _list_off(entries: Sequence[str], off_m: Sequence[float]) -> str:
+    named = [
+        f"{entry.rpartition(' ')[2]}: {off:.4g} m"
+        for entry, off in zip(entries, off_m, strict=True)
+    ]
+    return ", ".join(named[:MOST_NAMED]) + (" and more" if len(named) > MOST_NAMED else "")
+
+
+def _keep(place: complex) -> complex:
+    return place
+
+
+def _exchange(place: complex) -> complex:
+    """Return a place of exchanged coordinates; a turn apart it is any mirror image."""
+    return complex(place.imag, place.real)
+
+
+def _spread_m(places_m: Sequence[complex]) -> float:
+    """Return how far places lie from their middle, as the root of the mean square."""
+    middle_m = sum(places_m) / len(places_m)
+    return (sum(abs(place - middle_m) ** 2 for place in places_m) / len(places_m)) ** 0.5
+
+
+def _most_off_m(inside_m: Sequence[complex]) -> float:
+    """Return how far a point may be off: half of what a distance may, as two err in it."""
+    farthest_m = max(abs(place - inside_m[0]) for place in inside_m)
+    return (_MOST_OFF_M + _MOST_OFF_SHARE * farthest_m) / 2

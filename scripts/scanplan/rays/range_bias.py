@@ -21,6 +21,7 @@ from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _MOST_POINTS = 600_000  # more cost time, and make no estimate better
 _LEAST_OF_GROUP = 100  # points of one scan at one wall: fewer show no bend
+_LEAST_WALLS = 5  # of which one may be bent
 _BINS = 16  # parts of a wall whose means show whether it is flat
 _MOST_BENT = 3.0  # mean square of these means by noise alone is 1
 _BOW_M = 0.0005  # no wall is flatter than that
@@ -129,6 +130,43 @@ def estimate_range_bias(
         hits = hits.of(_are_flat(hits, _solve(hits, len(beams), settings.sigma_m))[hits.group])
         error_m[beams] = _solve(hits, len(beams), settings.sigma_m)
     return error_m
+
+
+def measure_common_bias(
+    rays: RaySet, segments: Columns, max_incidence_deg: float, band_m: float, up: FloatArray
+) -> tuple[float, float]:
+    """Measure by how much all ranges are too long, whatever a sensor may have.
+
+    Each wall of each scan tells it by its own bend; walls that are not flat otherwise are left out.
+    Half of the rest, by how well they tell it, lie between two quartiles.
+
+    Parameters
+    ----------
+    rays, segments, band_m, up
+        See `estimate_range_bias`.
+    max_incidence_deg : float
+        See `RangeBiasSettings`.
+
+    Returns
+    -------
+    median_m, sure_m : float
+        The median, and how far the quartile nearer to 0 is from it: 0 where 0 lies between them.
+        NaN of fewer than five walls.
+    """
+    settings = RangeBiasSettings(np.inf, max_incidence_deg)
+    hits = _hits(rays, segments, settings, band_m, up)
+    hits = hits.of(hits.summed(np.ones(len(hits.group)))[hits.group] >= _LEAST_OF_GROUP)
+    if hits.n_groups:
+        hits = hits.of(_are_flat(hits, np.zeros(int(hits.beam.max()) + 1))[hits.group])
+    if hits.n_groups < _LEAST_WALLS:
+        return np.nan, np.nan
+    cosine = hits.level(hits.cosine)
+    told = hits.summed(cosine**2)
+    bias_m = -hits.summed(hits.level(hits.offset_m) * cosine) / np.maximum(told, ROUNDING)
+    order = np.argsort(bias_m, kind="stable")
+    share = np.cumsum(told[order]) / told.sum()
+    low_m, median_m, high_m = bias_m[order][np.searchsorted(share, (0.25, 0.5, 0.75))].tolist()
+    return median_m, max(low_m, -high_m, 0.0)
 
 
 def remove_range_bias(

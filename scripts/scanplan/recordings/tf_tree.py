@@ -2,8 +2,13 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+import numpy as np
+
 from scanplan.errors import StageError
+from scanplan.geometry import se3
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.recordings.frame_edges import FrameEdge
+from scanplan.types import FloatArray
 
 WORLD_FRAMES = ("map", "odom", "world", "earth")
 
@@ -16,7 +21,8 @@ class _TwoParentsError(StageError):
     ) -> None:
         names = " and ".join(sorted(parents))
         super().__init__(
-            f"tf: frame {frame} hangs on {names}; set input.base_frame or input.base_from_sensor"
+            f"tf: frame {frame} hangs on {names}, which place it differently; set"
+            " input.base_from_sensor"
         )
         self.edges_below = list(edges_below)
 
@@ -67,9 +73,9 @@ class FrameTree:
         visited = [frame]
         below: list[FrameEdge] = []
         while parents := self._parents(visited[-1], follows):
-            if len(parents) > 1:
+            edge = self._choose_agreeing(list(parents.values()))
+            if edge is None:
                 raise _TwoParentsError(visited[-1], parents, below)
-            edge = next(iter(parents.values()))
             if edge.parent in visited:
                 cycle = " -> ".join([*visited, edge.parent])
                 raise StageError(f"tf: frames {cycle} are a cycle; mend the robot's tf")
@@ -80,6 +86,37 @@ class FrameTree:
     def _parents(self, frame: str, follows: Callable[[FrameEdge], bool]) -> dict[str, FrameEdge]:
         edges = self._edges.get(frame, {})
         return {parent: edge for parent, edge in edges.items() if follows(edge)}
+
+    def _choose_agreeing(self, edges: list[FrameEdge]) -> FrameEdge | None:
+        """Return the edge that begins the shortest way of several, None if they do not agree.
+
+        A mounting that two programs broadcast, each over frames of its own, is one mounting.
+        """
+        if len(edges) == 1:
+            return edges[0]
+        ways = [self._climb_rigid(edge) for edge in edges]
+        reached = [[edge.parent for edge in way] for way in ways]
+        common = [frame for frame in reached[0] if all(frame in others for others in reached)]
+        if not common:
+            return None
+        ends = [others.index(common[0]) + 1 for others in reached]
+        first, *rest = (_multiply(way[:end]) for way, end in zip(ways, ends, strict=True))
+        for pose in rest:
+            off_m = float(np.abs(first - pose)[:3, 3].max())
+            if max(off_m, se3.turn_between_rad(first, pose)) > SHORTEST_M:
+                return None
+        return min(zip(ends, edges, strict=True), key=lambda way: (way[0], way[1].parent))[1]
+
+    def _climb_rigid(self, edge: FrameEdge) -> list[FrameEdge]:
+        """Return an edge and those above it, as far as they never change and there is one way."""
+        way: list[FrameEdge] = []
+        parents = [edge]
+        met = {edge.child}
+        while len(parents) == 1 and parents[0].t_ns is None and parents[0].parent not in met:
+            way.append(parents[0])
+            met.add(parents[0].parent)
+            parents = list(self._edges.get(parents[0].parent, {}).values())
+        return way
 
     def path(self, start: str, end: str) -> list[FrameEdge] | None:
         """Return the edges whose product is start_from_end, or None if there is no way between.
@@ -135,6 +172,14 @@ class FrameTree:
             if edge.parent == "map":
                 break
         return next((name for name in ("map", "odom") if name in above), above[-1])
+
+
+def _multiply(way: Sequence[FrameEdge]) -> FloatArray:
+    """Return the pose (4, 4) of the lowest frame of constant edges, nearest first, in the top."""
+    pose = np.eye(4)
+    for edge in way:
+        pose = se3.pose_matrix(edge.xyz_m, edge.quat_xyzw)[0] @ pose
+    return pose
 
 
 def _check_constants(edges: Sequence[FrameEdge]) -> None:

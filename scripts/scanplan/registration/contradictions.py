@@ -1,11 +1,11 @@
 """What of a registration cannot be if the recording's units, mounting and clock are right."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
 from scanplan.geometry import se3
-from scanplan.registration import constraints, joins, loops, pose_lean, pose_scale
+from scanplan.registration import constraints, joins, loops, pauses, pose_lean, pose_scale
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.drift import submaps
 from scanplan.registration.drift.odometry import measure_way
@@ -14,12 +14,15 @@ from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.prepared_clouds import PreparedScans
 from scanplan.registration.sequential import ScanResult
-from scanplan.stage.witness_table import WITNESSES
+from scanplan.stage.witness_table import CUT, WITNESSES
 from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import FloatArray, IntArray
 
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
 _UNASKED = ("too_few_points", "pose_gap")
+_FEET = 0.3048  # metres
+_NEAR_FEET = 0.1  # of that: so few alignments are right where units differ
+_ASKED = 10  # scans whose points tell how far walls are
 _SUBMAP_M = 4.0  # of way, as advanced.registration.drift.submap_m
 _STATION_M = 0.5  # scans nearer to one another add next to nothing to a submap
 _SURE = 2.0  # standard deviations of a scale
@@ -125,17 +128,35 @@ def measure_map(
     height_m = float(np.ptp(np.percentile(xyz_m[:, 2], _ALL_BUT)))
     return [
         *_measure_jumps(jumps, scan_ids, t_ns[kept]),
-        state_witness("scale", _surely_off(scale, sigma), scale=scale, sigma=sigma),
+        _measure_scale(scale, sigma),
+        pauses.measure_untied(scan_ids, t_ns[kept], optimised),
         lean,
         # where the map leans heights say nothing
         state_witness("storeys", 0.0 if lean.is_beyond else height_m),
-        *_measure_places(world_from_cloud, clouds),
+        *_measure_places(world_from_cloud, t_ns[kept], clouds),
     ]
 
 
-def _surely_off(scale: float, sigma: float) -> float:
-    """Return how far a scale is off 1 at least; NaN where it is not known."""
-    return float(np.clip(abs(scale - 1) - _SURE * sigma, 0.0, None))
+def measure_ranges(scans_xyz_m: Iterable[FloatArray]) -> Measured:
+    """Return how far half of the points of some scans, in the sensor's frame, are from it."""
+    medians_m = [float(np.median(np.linalg.norm(xyz_m, axis=1))) for xyz_m in scans_xyz_m]
+    return state_witness("far walls", float(np.median(medians_m)) if medians_m else np.nan)
+
+
+def choose_some(rows: IntArray) -> IntArray:
+    """Return a few rows of many, spread evenly."""
+    return rows[:: -(-len(rows) // _ASKED) or 1]
+
+
+def _measure_scale(scale: float, sigma: float) -> Measured:
+    """Return how far a scale is surely off 1, and which unit that is."""
+    off = float(np.clip(abs(scale - 1) - _SURE * sigma, 0.0, None))
+    cause = "the scale of ranges or of poses is wrong"
+    remedy = "calibrate both against a tape"
+    for which, of in (("poses", _FEET), ("ranges", 1 / _FEET)):
+        if abs(scale / of - 1) <= _NEAR_FEET:
+            cause, remedy = f"{which} are in feet", "give both in metres"
+    return state_witness("scale", off, scale=scale, sigma=sigma, cause=cause, remedy=remedy)
 
 
 def _measure_jumps(
@@ -151,6 +172,7 @@ def _measure_jumps(
             found.append(state_witness(name, 0.0))
             continue
         worst = jumps[int(np.argmax(sizes))]
+        after_s = float(t_ns[worst.row] - t_ns[0]) / 1e9
         n_jumps = int(np.sum(np.array(sizes) > WITNESSES[name].limit))
         found.append(
             state_witness(
@@ -158,15 +180,26 @@ def _measure_jumps(
                 max(sizes),
                 n_jumps=n_jumps,
                 turn_deg=worst.turn_deg,
-                after_s=(t_ns[worst.row] - t_ns[0]) / 1e9,
+                after_s=after_s,
                 scan_id=int(scan_ids[worst.row]),
                 by=worst.by,
+                remedy=_remedy_jump(worst.by, after_s),
             )
         )
     return found
 
 
-def _measure_places(world_from_cloud: FloatArray, clouds: PreparedScans) -> list[Measured]:
+def _remedy_jump(by: str, after_s: float) -> str:
+    """Return what mends a map that jumps: odometry that goes on there needs no localiser."""
+    cut = CUT.format(after_s=after_s)
+    if by != joins.ODOMETRY:
+        return cut
+    return f"set input.pose_topic to the odometry's, which goes on there, or {cut}"
+
+
+def _measure_places(
+    world_from_cloud: FloatArray, t_ns: IntArray, clouds: PreparedScans
+) -> list[Measured]:
     """Return how places that the drive passed twice contradict each other."""
     from scanplan.registration.drift import folds  # scipy's 0.3 s
 
@@ -174,4 +207,4 @@ def _measure_places(world_from_cloud: FloatArray, clouds: PreparedScans) -> list
     is_station = loops.choose_stations(world_from_cloud, _STATION_M)
     pieces = [rows[is_station[rows]] for rows in submaps.cut_way(way_m, _SUBMAP_M)]
     maps = submaps.make_submaps([rows for rows in pieces if len(rows)], clouds, world_from_cloud)
-    return folds.measure_folds(maps, world_from_cloud, way_m, drifts=False)
+    return folds.measure_folds(maps, world_from_cloud, way_m, drifts=False, t_ns=t_ns)

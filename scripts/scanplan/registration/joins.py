@@ -19,12 +19,15 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MOST_SEARCHED = 20  # joins: of more lies than these a few tell enough, and each takes 0.2 s
 _SIDE = 5  # scans on either side that are merged: their walls together are like no other place's
-_LONGEST_S = 10.0  # between two scans: later a robot may be anywhere
+LONGEST_S = 10.0
+"""Between two scans, seconds: later a robot may be anywhere."""
 _SPEED_M_S = 1.5  # ASSUME of rovers and of people who carry a sensor, indoors
 _LEAST_FITNESS = 0.5  # of what an alignment shares: a scan 2 m aside was aligned with 0.31
 _LEAST_SUPPORT = 0.8  # of what both sides see, where they are right: one of 0.9 has moved chairs
 _NEAR_M = 0.5  # that a map may be off between two scans, however little later
-_ODOMETRY, _SCANS, _PACE = "odometry", "the scans on both sides", "the pace of a walk"
+ODOMETRY = "odometry"
+"""What knows of a jump where odometry was recorded."""
+_SCANS, _PACE = "the scans on both sides", "the pace of a walk"
 _NOTHING = ""
 
 
@@ -91,9 +94,9 @@ def find_map_jumps(
     motion = se3.invert_pose(world_from_cloud[loose - 1]) @ world_from_cloud[loose]
     known = np.full_like(motion, np.nan) if steps is None else steps[loose - 1]
     is_known = np.atleast_1d(np.isfinite(known).all(axis=(1, 2))).tolist()
-    by = [_ODOMETRY if is_so else _NOTHING for is_so in is_known]
+    by = [ODOMETRY if is_so else _NOTHING for is_so in is_known]
     apart_s = (t_ns[loose] - t_ns[loose - 1]) / 1e9
-    asked = [i for i, one in enumerate(by) if one == _NOTHING and apart_s[i] <= _LONGEST_S]
+    asked = [i for i, one in enumerate(by) if one == _NOTHING and apart_s[i] <= LONGEST_S]
     for i in asked[:: -(-len(asked) // _MOST_SEARCHED) or 1]:
         found = _match_sides(loose[i], apart_s[i], loose, world_from_cloud, read_clouds)
         if found is not None:
@@ -117,7 +120,7 @@ def _find_too_fast(t_ns: IntArray, world_from_cloud: FloatArray) -> BoolArray:
     step_m = np.hypot(*np.diff(world_from_cloud[:, :2, 3], axis=0).T)
     is_long = step_m > _reach_m(apart_s)
     # a log's stamps may be of when it was written
-    return is_long & (apart_s <= _LONGEST_S) & (2 * is_long.sum() <= len(is_long))
+    return is_long & (apart_s <= LONGEST_S) & (2 * is_long.sum() <= len(is_long))
 
 
 def _reach_m(apart_s: Any) -> Any:

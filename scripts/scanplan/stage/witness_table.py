@@ -50,10 +50,11 @@ _FOLDED = (
     " than it says"
 )
 _OTHER_MAP = "the localiser lost its map, or the robot was carried"
-_CUT = (
-    "cut the recording there; make each storey, and each part with a map of its own, a dataset of"
-    " its own"
+CUT = (
+    "cut the recording {after_s:,.0f} s after its first scan, and make each part, which has a map"
+    " or storey of its own, a dataset of its own"
 )
+"""What helps where a map changed."""
 
 # the most that sound surveys have stands beside each: 72 simulated drives of the bench, but for
 # those whose localiser did err by as much by their truth, and 12 real or public ones
@@ -156,7 +157,7 @@ WITNESSES = {
         "the map jumps by {value} and {turn_deg:.0f} degrees before scan {scan_id}, {after_s:.0f} s"
         " after the first, according to {by} (jumps in all: {n_jumps})",
         _OTHER_MAP,
-        _CUT,
+        "{remedy}",
     ),
     "map turn": Witness(
         5.0,
@@ -167,7 +168,7 @@ WITNESSES = {
         "the map turns by {value} before scan {scan_id}, {after_s:.0f} s after the first, according"
         " to {by} (turns in all: {n_jumps})",
         _OTHER_MAP,
-        _CUT,
+        "{remedy}",
     ),
     "scale": Witness(
         0.02,
@@ -176,9 +177,30 @@ WITNESSES = {
         SKETCH,
         "ranges and poses have different scales",
         "ranges are {scale:.3f} times as long as the poses have them (known to {sigma:.3f})",
-        "the unit or the scale of ranges or of poses is wrong, and lengths in the plan are off by"
-        " up to as much",
-        "calibrate both against a tape",
+        "{cause}, and lengths in the plan are off by up to as much",
+        "{remedy}",
+    ),
+    # 3.6 m in an office; in halls more, but few are so wide
+    "far walls": Witness(
+        30.0,
+        _METRES,
+        CAUSE,
+        NOT_A_PLAN,
+        "all is too large for a building",
+        "half of the points lie farther than {value} from the sensor",
+        "ranges are in centimetres, or in another unit than metres",
+        "give ranges and poses in metres",
+    ),
+    # 9.5 mm in a basement; data sheets state 30 mm at most
+    "range offset": Witness(
+        0.03,
+        _METRES,
+        CAUSE,
+        SKETCH,
+        "all ranges are off by a constant",
+        "all ranges are {offset_m:.2f} m too {which}, by how bent flat walls look",
+        "the sensor's zero is off, and walls come out too thin or too thick by twice as much",
+        "calibrate the sensor, and have its driver make ranges {offset_m:.2f} m {otherwise}",
     ),
     "lean": Witness(
         1.5,
@@ -201,6 +223,18 @@ WITNESSES = {
         "the poses' z is not up",
         "give poses in a map whose z is up",
     ),
+    # in four logs that stop for up to 40 s, and one for hours, 21 links and more
+    "untied pauses": Witness(
+        0,
+        _COUNT,
+        CAUSE,
+        SKETCH,
+        "parts of the drive have nothing in common",
+        "after {pause_s:,.0f} s without a scan ({after_s:,.0f} s after the first) no scan shows"
+        " what was seen before (such pauses in all: {value})",
+        "the recording was stopped, and the localiser may have begun another map",
+        "drive on from a place that was seen before, or make each part a dataset of its own",
+    ),
     "storeys": Witness(
         1.8,
         _METRES,
@@ -218,10 +252,10 @@ WITNESSES = {
         NOT_A_PLAN,
         "two maps or storeys lie on one another",
         "of {n_places:,} places that the drive passed twice one looks different each time ({value}"
-        " of what was seen contradicts, at x = {x_m:.1f} m, y = {y_m:.1f} m): two maps or storeys"
-        " lie on one another",
+        " of what was seen contradicts, at x = {x_m:.1f} m, y = {y_m:.1f} m), most of them if what"
+        " was seen until {after_s:,.0f} s after the first scan is held against what came later",
         _OTHER_MAP,
-        _CUT,
+        CUT,
     ),
     "loose scans": Witness(
         0,
@@ -360,8 +394,7 @@ WITNESSES = {
         "floor and ceiling are exchanged, and the plan is mirrored",
         "the sensor moved only {above_m:.2f} m below the ceiling, {value} of the way up from the"
         " floor",
-        "the sensor hung upside down, and its map has z down: floor and ceiling are exchanged and"
-        " the plan is mirrored",
+        "the sensor hung upside down, and its map has z down",
         "give poses in a map whose z is up",
     ),
 }

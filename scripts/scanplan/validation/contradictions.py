@@ -7,10 +7,11 @@ from scanplan.geometry import overlays
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.plan.tolerances import CORNER_M, END_M, ENOUGH_RAYS
+from scanplan.rays.range_bias import RangeBiasSettings, measure_common_bias
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import STRETCH_M
 from scanplan.stage.witnesses import Measured, state_witness
-from scanplan.types import FloatArray
+from scanplan.types import Columns, FloatArray
 
 
 def measure_drawn_walls(plan: FloorPlan, rays: RaySet, track_m: FloatArray) -> list[Measured]:
@@ -31,6 +32,22 @@ def measure_drawn_walls(plan: FloorPlan, rays: RaySet, track_m: FloatArray) -> l
         state_witness("returns off walls", 1 - near, near=near),
         state_witness("way through walls", measure_share_through_walls(plan, track_m)),
     ]
+
+
+def measure_range_offset(
+    rays: RaySet, segments: Columns, settings: RangeBiasSettings, band_m: float, up: FloatArray
+) -> Measured:
+    """Measure by how much all ranges are surely too long or too short, by how bent walls look.
+
+    Parameters
+    ----------
+    rays, segments, settings, band_m, up
+        See `range_bias.estimate_range_bias`.
+    """
+    median_m, sure_m = measure_common_bias(rays, segments, settings.max_incidence_deg, band_m, up)
+    which, otherwise = ("long", "shorter") if median_m > 0 else ("short", "longer")
+    told = {"offset_m": abs(median_m), "which": which, "otherwise": otherwise}
+    return state_witness("range offset", sure_m, **told)
 
 
 def measure_share_on_walls(plan: FloorPlan, rays: RaySet) -> float:

@@ -9,8 +9,9 @@ from scipy.sparse.csgraph import connected_components
 from scanplan.geometry import se3
 from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
+from scanplan.stage.witness_table import WITNESSES
 from scanplan.stage.witnesses import Measured, state_witness
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _NEAR_M = 1.5  # so near that most of what one place shows the other must show, too
 _AGAIN_M = 10.0  # of way between them: another pass
@@ -36,7 +37,12 @@ def measure_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> Mea
 
 
 def measure_folds(
-    maps: Sequence[Submap], world_from_cloud: FloatArray, way_m: FloatArray, *, drifts: bool = True
+    maps: Sequence[Submap],
+    world_from_cloud: FloatArray,
+    way_m: FloatArray,
+    *,
+    drifts: bool = True,
+    t_ns: IntArray | None = None,
 ) -> list[Measured]:
     """Return how places that were passed twice contradict each other; nothing without such.
 
@@ -50,6 +56,8 @@ def measure_folds(
         How far the sensor had come at each.
     drifts : bool
         Whether their poses were odometry's, and no localiser's.
+    t_ns : (n,) int64, optional
+        Stamps of all scans: by them it is told when the map changed.
     """
     rows = np.array([submap.row for submap in maps], np.int64)
     if len(rows) < 2:
@@ -76,9 +84,27 @@ def measure_folds(
     more = {"n_places": len(views), "x_m": x_m, "y_m": y_m}
     kind = "drifting " if drifts else ""
     other = state_witness(f"{kind}other place", float(np.nanmax(lacking, initial=0.0)), **more)
+    if t_ns is not None:
+        seam = _find_seam(pairs, lacking > WITNESSES[other.name].limit)
+        other = other.add(after_s=(t_ns[rows[seam - 1]] - t_ns[0]) / 1e9)
     # a localiser's poses fold no corridor onto its twin, and people stand where others stood
     if not drifts:
         return [other]
     # a long table may have been moved at one place
     share = n_moved / len(views) if n_moved > 1 else 0.0
     return [other, state_witness("moved walls", share, n_moved=n_moved, **more)]
+
+
+def _find_seam(pairs: IntArray, differ: BoolArray) -> int:
+    """Return before which submap the map changed: most pairs across it differ, others do not.
+
+    Parameters
+    ----------
+    pairs : (n, 2) int
+        Submaps of one place, the later one first.
+    differ : (n,) bool
+    """
+    later, earlier = pairs.T
+    seams = np.arange(1, int(later.max()) + 1)
+    is_across = (earlier < seams[:, None]) & (later >= seams[:, None])
+    return int(seams[np.argmax((is_across == differ).sum(axis=1))])

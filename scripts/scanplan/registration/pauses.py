@@ -1,0 +1,43 @@
+"""Parts of a drive between which nothing was recorded, and that nothing ties to one another."""
+
+import numpy as np
+
+from scanplan.registration.joins import LONGEST_S
+from scanplan.registration.multiway import OptimisedMap
+from scanplan.registration.pose_graph import INLIER_WEIGHT
+from scanplan.stage.witnesses import Measured, state_witness
+from scanplan.types import IntArray
+
+_LEAST_SCANS = 3  # of a part: a scan or two that fit nothing displace next to nothing
+
+
+def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> Measured:
+    """Return how many pauses part a drive in two of which no scan is aligned to one of the other.
+
+    Parameters
+    ----------
+    scan_ids : (n,) int, increasing
+    t_ns : (n,) int64
+        Their stamps.
+    optimised : multiway.OptimisedMap
+    """
+    ties = [
+        sorted((edge.source, edge.target))
+        for edge, weight in zip(optimised.edges, optimised.weight, strict=True)
+        if weight >= INLIER_WEIGHT
+    ]
+    earlier, later = np.searchsorted(scan_ids, np.array(ties, np.int64).reshape(-1, 2)).T
+    pause_s = np.diff(t_ns) / 1e9
+    found = [
+        row
+        for row in np.flatnonzero(pause_s > LONGEST_S).tolist()
+        if min(row + 1, len(scan_ids) - row - 1) >= _LEAST_SCANS
+        and not np.any((earlier <= row) & (later > row))
+    ]
+    longest = max(found, key=lambda row: pause_s[row], default=0)
+    return state_witness(
+        "untied pauses",
+        len(found),
+        pause_s=pause_s[longest] if found else 0.0,
+        after_s=(t_ns[longest] - t_ns[0]) / 1e9,
+    )
