@@ -11,6 +11,7 @@ from scanplan.exports.building.dxf_storeys import format_building_dxf
 from scanplan.exports.building.ifc_storeys import merge_ifc
 from scanplan.exports.building.placed_storey import PlacedStorey
 from scanplan.exports.building.sheet_set import compose_sheets
+from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan_files
@@ -100,7 +101,8 @@ def _compose_sheets(
         evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
         stated = {"project": own["project"] or name, "storey": storey["name"], "version": version}
         sheet = {"number": number + 1, "of": len(storeys)}
-        facts.append(summarise_survey(evidence, **stated, **sheet))
+        sensor = SensorErrors(own["range_offset_sigma_m"], own["range_scale_sigma"])
+        facts.append(summarise_survey(evidence, **stated, **sheet, sensor=sensor))
     rotations_rad = [
         math.radians(storey["place"][2]) if storey["aligned"] else None for storey in storeys
     ]

@@ -36,7 +36,8 @@ def correct_plan(
     for line in (*outcome.unmatched, *outcome.told):
         log.log_warning(f"correct_plan: {line}")
     points = [correction for correction in said if correction.element == "reference_point"]
-    reference = georeference.fit_reference(points)
+    checks = [correction for correction in said if correction.element == "check_point"]
+    reference = georeference.fit_reference(points, checks)
     notes = tables.read_notes(plan["free"], schemas.FREE)
     notes |= {"n_corrections": str(outcome.n_applied)}
     unmatched = [line.removeprefix(f"{corrections}: ") for line in outcome.unmatched]
@@ -50,7 +51,7 @@ def correct_plan(
         own = notes if name == "free" else None
         tables.write_table(outputs[name], schema, made[name], allow_empty=True, notes=own)
     log.log_line(
-        f"correct_plan: {outcome.n_applied} of {len(said) - len(points)} corrections"
+        f"correct_plan: {outcome.n_applied} of {len(said) - len(points) - len(checks)} corrections"
         f" applied{placed}"
     )
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan, floorplan_files
@@ -37,7 +38,8 @@ def export_plan(
     settings : dict
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
         of the map's cells; `turn`, `project` and `storey` of the sheet, see
-        `composition.compose_sheet`; `dxf_unit`, mm or m.
+        `composition.compose_sheet`; `dxf_unit`, mm or m; `range_offset_sigma_m` and
+        `range_scale_sigma`, see `accuracy.SensorErrors`.
     version : str
         Of the software, for the title block.
     """
@@ -49,6 +51,7 @@ def export_plan(
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
+        sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
     )
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)

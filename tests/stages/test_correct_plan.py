@@ -188,6 +188,22 @@ def test_reference_points_say_where_the_plan_lies(plan, caplog):
     assert "3 reference points agree within 0.00 m" in caplog.text
 
 
+def test_each_control_and_check_point_has_its_residual(plan):
+    """Two points 10 m apart that are 10.2 m apart outside, and one between that is 0.3 m aside."""
+    known = {"crs": "EPSG:25832"}
+    points = [((0, 0), (1000, 2000)), ((10, 0), (1010.2, 2000))]
+    said = [
+        {"element": "reference_point", "at": list(at), "world": list(world), **known}
+        for at, world in points
+    ]
+    said.append({"element": "check_point", "at": [5, 0], "world": [1005.1, 2000.3], **known})
+    reference = corrected(plan, *said).georeference
+    assert reference.control_off_m == pytest.approx([0.1, 0.1])
+    assert reference.check_off_m == pytest.approx([0.3])
+    without = corrected(plan, *said[:2]).georeference
+    assert (without.east_m, without.rotation_rad) == (reference.east_m, reference.rotation_rad)
+
+
 @pytest.mark.parametrize(
     ("entry", "said"),
     [

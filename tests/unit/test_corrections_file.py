@@ -58,7 +58,10 @@ def test_geojson_says_the_same(tmp_path):
 @pytest.mark.parametrize(
     ("entry", "fault"),
     [
-        ("{element: wal, at: [1, 2], action: keep}", "element is 'wal', expected one of opening"),
+        (
+            "{element: wal, at: [1, 2], action: keep}",
+            "element is 'wal', expected one of check_point",
+        ),
         ("{element: wall, at: [1, 2], action: paint}", "action of a wall is 'paint', expected"),
         ("{element: wall, at: [1, 2]}", "action of a wall is 'change', expected one of keep"),
         ("{element: wall, at: [1], action: keep}", "at is [1], expected two numbers"),
@@ -105,6 +108,7 @@ def test_geojson_says_the_same(tmp_path):
         ("{element: reference_point, at: [0, 0], world: [1, 2], crs: EPSG:4326}", "in degrees"),
         ("{element: reference_point, at: [0, 0], world: [1.0e+300, 2], crs: x}", "up to 1e+08"),
         ("{element: reference_point, at: [0, 0], world: [1, 2], crs: x}", "add another"),
+        ("{element: check_point, at: [0, 0], world: [1, 2], crs: EPSG:25832}", "add two"),
         ("just words", "is 'just words', expected `element: ...`"),
     ],
 )

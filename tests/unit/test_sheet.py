@@ -17,7 +17,7 @@ from scanplan.exports.sheet.marks import Symbol, Word, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
-from scanplan.store.doubts import Doubts
+from scanplan.store.doubts import Doubts, Finding
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
 
@@ -462,7 +462,8 @@ def test_the_title_block_states_the_survey():
     said = [word.text for word in composition.compose_sheet(plan(rooms=rooms), facts).paper_words]
     assert {"Town hall", "First floor", "2024-05-06", "12 scans", "scanplan 1"} <= set(said)
     # 2 mm of offset are 3.9 mm of 95 %
-    assert "LOA40: walls ± 3.9 mm (95 %), relative" in said
+    assert "LOA40: walls ± 3.9 mm (95 %), of which the sensor ± 0.0 mm" in said
+    assert any(word.startswith("a plan: 2 of 2 rooms are closed") for word in said)
     assert {"Foyer", "Room 1", "12.0", "9.0", "14.00"} <= set(said)
 
 
@@ -483,6 +484,36 @@ def test_a_long_value_of_the_title_block_is_written_on_two_lines():
 def test_accuracy_is_the_class_that_holds_95_percent(sigma_m, name):
     walls = floorplan_making.walls() | {"sigma_offset_m": np.full(6, sigma_m)}
     assert accuracy.state_accuracy(plan(walls=walls)).startswith(name)
+
+
+def test_what_the_sensor_is_off_by_is_in_the_accuracy():
+    """1 mm of a wall, 3 mm of all ranges, and 4 mm of scale over half of 8 m: 10 mm of 95 %."""
+    walls = floorplan_making.walls()
+    reach_m = np.ptp(np.concatenate([walls["x0_m"], walls["x1_m"]])) / 2
+    walls |= {"sigma_offset_m": np.full(6, 0.001)}
+    sensor = accuracy.SensorErrors(0.003, 0.004 / reach_m)
+    said = accuracy.state_accuracy(plan(walls=walls), sensor)
+    assert said == "LOA30: walls ± 10.0 mm (95 %), of which the sensor ± 9.8 mm"
+
+
+def test_no_accuracy_is_stated_of_what_is_mostly_in_doubt():
+    walls = floorplan_making.walls() | {"verify": np.ones(6, bool)}
+    assert "most of the walls are to be verified" in accuracy.state_accuracy(plan(walls=walls))
+    jump = Finding("map jump", 2.0, "it jumps", "carried", "cut")
+    folded = plan(doubted=Doubts(findings=(jump,)))
+    assert accuracy.state_accuracy(folded) == "none stated of what is no plan"
+    opened = floorplan_making.rooms() | {"closed": np.zeros(2, bool)}
+    assert accuracy.state_accuracy(plan(rooms=opened)) == "none stated of a sketch"
+
+
+@pytest.mark.parametrize("remedy", ["cut it", "cut it " * 60])
+def test_the_verdict_on_a_sheet_is_whole_and_has_its_remedy_if_there_is_room(remedy):
+    jump = Finding("map jump", 2.0, "it jumps", "the robot was carried", remedy)
+    sheet = composition.compose_sheet(plan(doubted=Doubts(findings=(jump,))))
+    words = [w.text for w in sheet.paper_words if w.element.startswith("title:VERDICT")]
+    said = " ".join(words)
+    assert said.startswith("not a plan: the map jumps") and "…" not in said
+    assert said.endswith("cut it" if len(remedy) < 20 else "see summary.txt")
 
 
 def test_accuracy_without_sigmas_is_not_known():

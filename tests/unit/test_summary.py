@@ -93,3 +93,11 @@ def test_what_speaks_against_all_of_it_stands_before_what_is_merely_noted():
     assert lines["verdict"].endswith("; it was carried; cut it")
     assert lines["doubtful"].startswith("the map jumps: it was carried; cut it; ")
     assert lines["noted"] == "recordings lie apart: two states; part them"
+
+
+def test_how_far_each_control_and_check_point_is_off_is_told():
+    reference = floorplan.GeoReference("EPSG:25832", 5e5, 54e5, 0.0, 0.2, [0.1, 0.3], [0.25])
+    lines = summarise_survey(plan(georeference=reference), survey()).splitlines()
+    (placed,) = [line for line in lines if line.startswith("placed")]
+    assert "2 control points, off by 0.100, 0.300 m" in placed and "EPSG:25832" in placed
+    assert placed.endswith("1 check point, off by 0.250 m")

@@ -67,6 +67,8 @@ class GeoReference:
         The direction of the map's x axis in it, counter-clockwise from east.
     residual_m : float
         Root of the mean square distance of the reference points after it.
+    control_off_m, check_off_m : sequence of float
+        Distance of each of them, and of each point that was not used for it.
     """
 
     crs: str
@@ -74,6 +76,8 @@ class GeoReference:
     north_m: float
     rotation_rad: float
     residual_m: float
+    control_off_m: Sequence[float] = ()
+    check_off_m: Sequence[float] = ()
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,11 @@ _KEYS = {
     ("room", "remove"): ("at",),
     ("room", "change"): ("at", "name"),
     ("reference_point", "add"): ("at", "world", "crs"),
+    ("check_point", "add"): ("at", "world", "crs"),
 }
 """What may be done to an element, and the keys of such an entry."""
+POINTS = ("reference_point", "check_point")
+"""What says where the plan lies, and what is held against that: no elements of it."""
 _OPTIONAL = ("thickness_m",)
 _KINDS = ("door", "window", "passage")
 _THICKNESS_M = (0.01, 3.0)
@@ -54,7 +57,7 @@ class Correction:
     entry : str
         File and number of the entry, for messages.
     element : str
-        wall, opening, room, or reference_point.
+        wall, opening, room, or one of `POINTS`.
     action : str
         keep, remove, add, or change (of an opening's kind, or a room's name).
     at_m : (float, float)
@@ -66,7 +69,7 @@ class Correction:
     thickness_m : float or None
         Of a wall that is added.
     world_m : tuple of float or None
-        East and north of a reference point.
+        East and north of a reference or check point.
     crs : str
         In which these are, such as EPSG:25832.
     """
@@ -131,8 +134,11 @@ def read_corrections(path: FilePath) -> list[Correction]:
     ]
     _check_places(corrections)
     points = [c for c in corrections if c.element == "reference_point"]
-    if len({point.crs for point in points}) > 1:
+    checks = [c for c in corrections if c.element == "check_point"]
+    if len({point.crs for point in (*points, *checks)}) > 1:
         raise StageError(f"{path}: reference points are in several `crs`; give all in one")
+    if checks and not points:
+        raise StageError(f"{checks[0].entry}: no reference point to hold it against; add two")
     if len(points) == 1:
         raise StageError(f"{points[0].entry}: one reference point gives no direction; add another")
     if points:
@@ -150,7 +156,7 @@ def _check_entry(entry: str, values: Any) -> Correction:
     elements = sorted({known for known, _ in _KEYS})
     if element not in elements:
         raise StageError(f"{entry}: element is {element!r}, expected one of {', '.join(elements)}")
-    action = values.get("action") or ("add" if element == "reference_point" else "change")
+    action = values.get("action") or ("add" if element in POINTS else "change")
     if not isinstance(action, str) or (element, action) not in _KEYS:
         known = ", ".join(a for e, a in _KEYS if e == element)
         raise StageError(f"{entry}: action of a {element} is {action!r}, expected one of {known}")

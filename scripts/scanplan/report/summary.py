@@ -47,12 +47,13 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f" ({n_candidates:,} candidates of {survey.n_recorded:,} recorded)"
     )
     damage = plan.doubted.damage
-    notes = wording.list_notes(plan)
+    notes, reference = wording.list_notes(plan), plan.georeference
     lines = [
         ("verdict", judge_plan(plan).line),
         *([("damaged", "; ".join(damage))] if damage else []),
         ("found", found),
         ("doubtful", "; ".join(doubts) or "nothing that the plan marks"),
+        *([("placed", wording.state_reference(reference))] if reference else []),
         *([("noted", "; ".join(notes))] if notes else []),
         ("made of", used),
         ("tested", wording.prediction_sentence(survey.prediction)),

@@ -1,6 +1,7 @@
 """The report's sentences and head figures."""
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -56,6 +57,23 @@ def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
     ]
 
 
+def state_reference(reference: floorplan.GeoReference) -> str:
+    """Return how far each control and each check point is off where a plan is laid onto Earth."""
+
+    def listed(off_m: Sequence[float]) -> str:
+        return ", ".join(f"{off:.3f}" for off in off_m)
+
+    controls = floorplan.say_count(len(reference.control_off_m), "control point")
+    parts = [
+        f"in {reference.crs} by {controls}, off by {listed(reference.control_off_m)} m",
+        f"their root mean square is {reference.residual_m:.3f} m",
+    ]
+    if reference.check_off_m:
+        counted = floorplan.say_count(len(reference.check_off_m), "check point")
+        parts.append(f"{counted}, off by {listed(reference.check_off_m)} m")
+    return "; ".join(parts)
+
+
 def list_notes(plan: floorplan.FloorPlan) -> list[str]:
     """Return what else stages warned of, in sentences."""
     return [found.sentence for found in plan.doubted.findings if is_note(found)]
@@ -68,6 +86,8 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     thickness_m = plan.walls["thickness_m"][plan.thick]
     thickness = f"{1000 * np.median(thickness_m):.0f} mm" if len(thickness_m) else "not known"
     counts = Counter(doubt.kind for doubt in doubts.list_doubts(plan))
+    reference = plan.georeference
+    placed = [] if reference is None else [("on Earth", state_reference(reference))]
     to_verify = [f"{n:,} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items()]
     return [
         ("recorded", recorded),
@@ -76,6 +96,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
         ("length of walls", f"{page_tables.wall_lengths_m(plan).sum():,.1f} m"),
         ("median thickness", thickness),
         ("area of rooms", _area_of_rooms(plan.rooms)),
+        *placed,
         ("to verify on site", ", ".join(to_verify) or "nothing that is marked"),
     ]
 

@@ -1,11 +1,11 @@
 """What stands on a sheet beside its plan: frame, title block, legend, table of rooms, scale bar."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan.exports.sheet.accuracy import state_accuracy
+from scanplan.exports.sheet.accuracy import SensorErrors, state_accuracy
 from scanplan.exports.sheet.lettering import (
     clean_text,
     rotation,
@@ -44,6 +44,7 @@ class SheetFacts:
         Of the software.
     number, of : int
         Which sheet of a set of how many it is.
+    sensor : accuracy.SensorErrors
     """
 
     project: str = ""
@@ -53,9 +54,10 @@ class SheetFacts:
     version: str = ""
     number: int = 1
     of: int = 1
+    sensor: SensorErrors = field(default_factory=SensorErrors)
 
 
-def summarise_survey(evidence: Columns, **stated: str | int) -> SheetFacts:
+def summarise_survey(evidence: Columns, **stated: str | int | SensorErrors) -> SheetFacts:
     """Return what a title block states of the scans that a plan is made of.
 
     Parameters
@@ -96,7 +98,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         [("Drawing", f"Floor plan, as surveyed{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
-            ("Accuracy", state_accuracy(plan), 2),
+            ("Accuracy", state_accuracy(plan, facts.sensor), 2),
         ],
         [
             ("Made of", say_count(facts.n_scans, "scan"), 1),

@@ -9,7 +9,7 @@ import shapely
 from scanplan.errors import StageError
 from scanplan.plan.corrections import added
 from scanplan.plan.corrections.rows import PlanRows, Row
-from scanplan.project.corrections_file import Correction
+from scanplan.project.corrections_file import POINTS, Correction
 from scanplan.types import FloatArray
 
 SAID = {
@@ -81,7 +81,7 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
     for correction, row in found:
         _change(rows, correction, row, outcome)
     for correction in corrections:
-        if correction.action == "add" and correction.element != "reference_point":
+        if correction.action == "add" and correction.element not in POINTS:
             _add(rows, correction, outcome)
     outcome.n_applied += len(found)
     if not rows.faces:
