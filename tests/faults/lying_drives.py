@@ -25,6 +25,45 @@ _SENSORS = {
 }
 _MIRROR = [(0.15, 0.5), (0.15, 3.3)]
 _HEALED_M = 0.1  # of a scan: registration brought it to where it is without a lie
+_LOST, _ERRS = "the localiser lost its map", "the poses themselves err"
+_CAUSES = {
+    "map jumps": (_LOST,),
+    "every": (_LOST, _ERRS),
+    "a tenth of the clouds": ("sent its last cloud again",),
+    "origin drifts": (_LOST, _ERRS),
+    "ranges 5 %": ("scale of ranges",),
+    "ranges 4 %": ("scale of ranges",),
+    "ranges 10 %": ("scale of ranges",),
+    "ranges 0.15 m": ("the sensor's zero is off",),
+    "all in feet": ("in feet",),
+    "ranges in feet": ("ranges are in feet",),
+    "poses in feet": ("poses are in feet",),
+    "all in centimetres": ("in centimetres",),
+    "ranges in centimetres": ("in centimetres",),
+    "all in millimetres": ("in millimetres",),
+    "ranges in millimetres": ("in millimetres",),
+    "poses inverted": ("inverted",),
+    "quaternion w first": ("begin with w",),
+    "clouds in the map already": ("in the map already",),
+    "clouds mirrored": ("mirrored",),
+    "sensor turned by 90": ("turned by -90 degrees",),
+    "sensor turned by 180": ("turned by 180 degrees",),
+    "sensor rolled by 180": ("hangs upside down",),
+    "sensor nods": ("tilted on its mount",),
+    "poses 0.5 s late": ("0.50 s later",),
+    "poses 0.5 s early": ("0.50 s earlier",),
+    "poses 1 s late": ("1.00 s later",),
+    "localiser": (_LOST,),
+    "sensor stands still": ("its poses (input.pose_topic) do not say so",),
+    "map with z down": ("has z down",),
+    "map leans": ("z is not up",),
+    "map of a camera's axes": ("a camera's axes",),
+    "second bag": (_LOST, "begun another map"),
+    "two storeys on one another": (_LOST,),
+    "two storeys one above": ("more than one storey was driven through",),
+    "a mirror": ("a mirror hangs there",),
+}
+"""By how the names of lies begin: what the one cause that a verdict names says of it."""
 _UNTELLABLE = ("axes of map and clouds left-handed",)
 """Every measure of the mirror image of a building is that of a building."""
 
@@ -44,12 +83,16 @@ def try_lies(folder, tally):
         }
         known = {"none": lambda drives: drives["rooms"]} | lies.list_lies(planar=planar)
         right = None
+        named = []
         for number, (name, lie) in enumerate(known.items()):
             made = lie(driven)
             outcome, said, found = _judge_lie(place / str(number), made, name, right)
             right = found if name == "none" else right
+            if outcome in (judging.TOLD, judging.CLEAR):
+                named.append(_names_cause(name, said))
             tally.add(GROUP, f"{name}, {sensor}", outcome, said)
             print(f"{sensor:<14}{name:<52}{outcome:<12}{said}"[:300], flush=True)
+        print(f"{sensor}: the right cause first in {sum(named)} of {len(named)} told", flush=True)
 
 
 def _judge_lie(place, made, name, right):
@@ -58,7 +101,8 @@ def _judge_lie(place, made, name, right):
     parts = made if isinstance(made, list) else [made]
     recordings = [str(part.write(place / f"run{i}")) for i, part in enumerate(parts)]
     try:
-        said = "; ".join(making.make_plan(place, recordings).contradictions)
+        is_doubted = bool(making.make_plan(place, recordings))
+        said = making.read_verdict(place).line if is_doubted else ""
     except StageError as error:
         return (judging.SILENT if name == "none" else judging.CLEAR), str(error), None
     found = _read_places(place)
@@ -68,6 +112,12 @@ def _judge_lie(place, made, name, right):
         return judging.TOLD, said, found
     is_healed = right is not None and _are_same(found, right)
     return (judging.SOUND if is_healed or name in _UNTELLABLE else judging.SILENT), said, found
+
+
+def _names_cause(name, said):
+    """Return whether what was said names the cause of a lie."""
+    (words,) = [words for begins, words in _CAUSES.items() if name.startswith(begins)]
+    return any(word in said for word in words)
 
 
 def _read_places(place):

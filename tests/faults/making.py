@@ -13,6 +13,7 @@ from scanplan.plan import floorplan_files, planning
 from scanplan.project import stage_settings
 from scanplan.selection import methods
 from scanplan.store import doubts, schemas
+from scanplan.validation.verdict import judge_plan
 from validate_plan import validate_plan
 
 _TABLES = ("poses", "motion", "scans", "registration", "edges", "seen", "order", "segments")
@@ -79,5 +80,14 @@ def make_plan(place, recordings, *, until="plan", **topics):
         settings=stage_settings.select_validation(SETTINGS),
         **stop,
     )
-    known = {**plan, "confidence": rated["confidence"]}
-    return floorplan_files.read_floorplan(known).doubted
+    return _read_plan(place).doubted
+
+
+def read_verdict(place):
+    """Return the verdict on the plan that `make_plan` has made."""
+    return judge_plan(_read_plan(place))
+
+
+def _read_plan(place):
+    plan = {table: place / f"plan_{table}.parquet" for table in planning.TABLES}
+    return floorplan_files.read_floorplan({**plan, "confidence": place / "confidence.parquet"})

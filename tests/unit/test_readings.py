@@ -54,6 +54,14 @@ def turned(degrees):
     return lambda cloud, _: cloud @ turn.T
 
 
+def nodding(degrees):
+    """Points of a sensor whose x axis points up by an angle, taken for level."""
+    angle = np.radians(degrees)
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn = np.array([[cos, 0, sin], [0, 1.0, 0], [-sin, 0, cos]])
+    return lambda cloud, _: cloud @ turn.T
+
+
 @pytest.mark.parametrize(
     ("poses", "change", "word"),
     [
@@ -65,6 +73,8 @@ def turned(degrees):
         (TRUE, turned(-90), "by 90 degrees"),
         (TRUE, turned(180), "180 degrees"),
         (TRUE, lambda cloud, _: cloud / 0.3048, "ranges are in feet"),
+        (TRUE, nodding(-8), "pitch of some 10 degrees"),
+        (TRUE, nodding(8), "pitch of some -10 degrees"),
         (np.repeat(TRUE[:1], 20, axis=0), None, "stood still"),
     ],
 )

@@ -14,7 +14,7 @@ from scanplan.geometry import se3
 from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.types import FloatArray, IntArray
 
-_PAIRS = 12  # enough for a median; a pair takes a few milliseconds a reading
+_PAIRS = 12  # enough for a mean; a pair takes a few milliseconds a reading
 _LEAST_PAIRS = 3  # of fewer a jump of the map between two scans is most
 _POINTS = 600  # of a scan: shares of fewer scatter
 _NEAR_M = 0.1  # of another point, by ranges and by how far apart points are
@@ -24,6 +24,7 @@ _LEAST_MET = 0.5  # the right reading has 0.6 to 0.95, others 0.25 at most
 _MORE = 0.2  # than as the scans were read
 _DELAYS_S = (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0)  # of clocks: nearer hardly show
 _FOOT_M = 0.3048
+_TILTS_DEG = (-10.0, -5.0, 5.0, 10.0)  # of a mount; nearer ones are known by the nearest
 _STILL_M = 0.05  # poses nearer to one another say that the sensor stood
 ReadPoints = Callable[[IntArray], Sequence[FloatArray]]
 PosesAt = Callable[[IntArray], FloatArray | None]
@@ -95,7 +96,7 @@ def list_readings(
             same,
         ),
     ]
-    for wrong, cloud in _list_mountings():
+    for wrong, cloud in [*_list_mountings(), *_list_tilts()]:
         found.append(Reading(wrong, poses, cloud))
     for delay_s in _DELAYS_S:
         by = f"{abs(delay_s):.2f} s {'later' if delay_s > 0 else 'earlier'}"
@@ -164,6 +165,23 @@ def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
     ]
 
 
+def _list_tilts() -> list[tuple[Misreading, FloatArray]]:
+    """Return by how much a sensor may nod or lean on its mount, and what makes its points right."""
+    found = []
+    for name, one, other in (("pitch", 2, 0), ("roll", 1, 2)):
+        for tilt_deg in _TILTS_DEG:
+            turn = np.eye(3)
+            cos, sin = np.cos(np.radians(tilt_deg)), np.sin(np.radians(tilt_deg))
+            turn[one, one] = turn[other, other] = cos
+            turn[one, other], turn[other, one] = -sin, sin
+            wrong = Misreading(
+                f"the sensor is tilted on its mount, by a {name} of some {tilt_deg:.0f} degrees",
+                "state it by input.base_from_sensor",
+            )
+            found.append((wrong, turn))
+    return found
+
+
 def find_reading(
     world_from_sensor: FloatArray,
     t_ns: IntArray,
@@ -198,8 +216,9 @@ def find_reading(
     thinned = [cloud[:: max(1, len(cloud) // _POINTS)] for cloud in clouds]
     readings = list_readings(world_from_sensor[known], t_ns[known], rows, moved_at)
     places = np.searchsorted(rows, first).tolist()
+    # of a clock that is off most pairs meet, as the sensor went steadily: the mean tells it apart
     met = [
-        float(np.median([_measure_met(reading, i, clouds, thinned, planar) for i in places]))
+        float(np.mean([_measure_met(reading, i, clouds, thinned, planar) for i in places]))
         for reading in readings
     ]
     best = int(np.argmax(met))

@@ -140,7 +140,7 @@ WITNESSES = {
     "repeats": Witness(
         0.01,
         _SHARE,
-        CAUSE,
+        FOUND,
         SKETCH,
         "scans are sent again",
         "{value} of the scans ({n_repeated:,} of {n_asked:,}) are an earlier one again, bit by bit",
@@ -184,7 +184,7 @@ WITNESSES = {
     "far walls": Witness(
         30.0,
         _METRES,
-        CAUSE,
+        FOUND,
         NOT_A_PLAN,
         "all is too large for a building",
         "half of the points lie farther than {value} from the sensor",
