@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from scanplan.report import figures, registration_figure, top_view, validation_figure
+from scanplan.report import (
+    deviation_figure,
+    figures,
+    registration_figure,
+    top_view,
+    validation_figure,
+)
 from scanplan.selection import stopping
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, registered_scans, schemas, tables
@@ -28,12 +34,14 @@ def draw_figures(
     ----------
     made : dict of str to path-like
         `scans`, `registration`, `edges` and `crispness` of the registration; `selection`, the
-        plan's ordering; `faces`, `elements` and `rays` of plan/, the latter two of its validation.
+        plan's ordering; `faces`, `free`, `elements` and `rays` of plan/, the latter two of its
+        validation.
         `crispness`, or these two, are empty lists where their stage failed.
     outputs : dict of str to path-like
         To write: `registration`, the audit of the registration; `scans`, where they were taken and
         which are selected (thesis, figure 5.9); `walls`, the plan's faces over the points of the
-        selected scans (thesis, figure 5.11); `validation`, where rays of other scans ended.
+        selected scans (thesis, figure 5.11); `validation`, where rays of other scans ended;
+        `deviation`, how far points lie from the faces.
     **stop
         How many scans are selected, see `stopping.choose_n_scans`.
     """
@@ -59,6 +67,7 @@ def _draw_figures(
     selected_xy_m = top_view.sample_points(store.scans(chosen_ids.tolist()), len(chosen_ids))
     yield "walls", figures.draw_walls_figure(selected_xy_m, faces, chosen_xy_m)
     yield "validation", _draw_validation(made)
+    yield "deviation", _draw_deviation(made, store, chosen_ids)
 
 
 def _draw_registration(
@@ -71,6 +80,21 @@ def _draw_registration(
         thickness = tables.read_table(made["crispness"], schemas.CRISPNESS, ["poses", "sigma_m"])
         sigma_m = dict(zip(thickness["poses"].tolist(), thickness["sigma_m"].tolist(), strict=True))
     return registration_figure.draw_registration_figure(points_xy_m, poses, links, sigma_m)
+
+
+def _draw_deviation(
+    made: Mapping[str, FilePath], store: tables.ScanStore, chosen_ids: IntArray
+) -> Figure:
+    """Draw how far points of the selected scans, between floor and ceiling, lie from the faces."""
+    faces = tables.read_table(made["faces"], schemas.FACES)
+    notes = tables.read_notes(made["free"], schemas.FREE)
+    low_m, high_m = (float(notes.get(name) or "nan") for name in ("floor_z_m", "ceiling_z_m"))
+    scans = (
+        (scan_id, deviation_figure.take_upright(xyz_m, low_m, high_m))
+        for scan_id, xyz_m in store.scans(chosen_ids.tolist())
+    )
+    xy_m = top_view.sample_points(scans, len(chosen_ids))
+    return deviation_figure.draw_deviation_figure(xy_m, faces)
 
 
 def _draw_validation(made: Mapping[str, FilePath]) -> Figure:

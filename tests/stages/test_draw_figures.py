@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from draw_figures import draw_figures
-from helpers import face_making
+from helpers import face_making, floorplan_making
 from helpers.wall_making import BARE, walls
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
@@ -51,6 +51,10 @@ def results(tmp_path):
         tables.write_table(tmp_path / f"{method}.parquet", schemas.SELECTION, known | columns)
     merged = face_making.merge(walls([(0, 0, 6, 0), (6, 4, 0, 4)]), BARE)
     tables.write_table(tmp_path / "faces.parquet", schemas.FACES, merged)
+    notes = {"floor_z_m": "0.0", "ceiling_z_m": "2.0"}
+    tables.write_table(
+        tmp_path / "free.parquet", schemas.FREE, floorplan_making.free(), notes=notes
+    )
     write_audit(tmp_path)
     write_validation(tmp_path)
     return tmp_path
@@ -85,10 +89,10 @@ def write_validation(folder):
 def draw(results, folder, n_scans=1):
     """Draw all figures of some results; return their texts by name."""
     folder.mkdir()
-    names = ("scans", "registration", "edges", "crispness", "faces", "elements", "rays")
+    names = ("scans", "registration", "edges", "crispness", "faces", "free", "elements", "rays")
     made = {name: results / f"{name}.parquet" for name in names}
     made["selection"] = results / "cluster_hull.parquet"
-    figures = ("registration", "scans", "walls", "validation")
+    figures = ("registration", "scans", "walls", "validation", "deviation")
     outputs = {name: folder / f"{name}.svg" for name in figures}
     draw_figures(made, outputs, n_scans=n_scans, area_share=None)
     return {name: path.read_text() for name, path in outputs.items()}

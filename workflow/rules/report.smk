@@ -1,5 +1,5 @@
 rule draw_figures:
-    """Draw the registration, the scans and their selection, the walls over points, the validation."""
+    """Draw the registration, the scans and their selection, the walls over points, the validation, deviations."""
     input:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
@@ -7,6 +7,7 @@ rule draw_figures:
         crispness=if_kept("results/{dataset}/crispness.parquet"),
         selection=plan_selection,
         faces=plan_table("faces"),
+        free=plan_table("free"),
         elements=if_kept("results/{dataset}/plan/validation.parquet"),
         rays=if_kept("results/{dataset}/plan/validation_rays.parquet"),
     output:
@@ -33,6 +34,12 @@ rule draw_figures:
             caption="../report/validation.rst",
             category="{dataset}",
             labels={"figure": "8 prediction of other scans"},
+        ),
+        deviation=report(
+            "results/{dataset}/figures/deviation.svg",
+            caption="../report/deviation.rst",
+            category="{dataset}",
+            labels={"figure": "9 points against the plan"},
         ),
     log:
         "logs/{dataset}/draw_figures.log",

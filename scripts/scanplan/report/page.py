@@ -35,6 +35,8 @@ _CAPTIONS = {
     "walls": "Wall faces of the plan over the points of the selected scans.",
     "validation": "Where rays of scans that did not make the plan ended, and whether the plan"
     " explains it.",
+    "deviation": "Points of the selected scans, between floor and ceiling, by how far they lie from"
+    " the faces that are drawn, and faces that no point shows.",
     "oracle_shares": "What the first scans of every ordering find, as a share of what the oracle's"
     " do.",
     "evaluation": "What the first scans of every ordering find of the true walls, and why walls"
