@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from faults import drives, judging, lies, making
+from faults import drives, judging, lies, making, remedies
 from scanplan.errors import StageError
 from scanplan.registration import results
 from scanplan.store import schemas, tables
 
 GROUP = "drives with one lie"
-_SENSORS = {
+SENSORS = {
     "in space": {"mount": {"height_m": 0.5}},
     "in the plane": {
         "mount": {"height_m": 0.3},
@@ -70,7 +70,7 @@ _UNTELLABLE = ("axes of map and clouds left-handed",)
 
 def try_lies(folder, tally):
     """Try every lie with a sensor in space and in the plane."""
-    for sensor, settings in _SENSORS.items():
+    for sensor, settings in SENSORS.items():
         place = Path(folder) / sensor.replace(" ", "_")
         planar = sensor == "in the plane"
         driven = {
@@ -92,6 +92,7 @@ def try_lies(folder, tally):
                 named.append(_names_cause(name, said))
             tally.add(GROUP, f"{name}, {sensor}", outcome, said)
             print(f"{sensor:<14}{name:<52}{outcome:<12}{said}"[:300], flush=True)
+        remedies.try_remedies(place / "remedies", driven, planar=planar, tally=tally)
         print(f"{sensor}: the right cause first in {sum(named)} of {len(named)} told", flush=True)
 
 

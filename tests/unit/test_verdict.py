@@ -43,6 +43,10 @@ def test_of_many_open_rooms_the_widest_are_named():
     assert "Room 19 and others" in verdict.remedy and "Room 0," not in verdict.remedy
 
 
+def test_one_open_room_is_said_in_the_singular():
+    assert judged(closed=(False,), areas_m2=(9.0,)).gist == "0 of 1 room is closed, 0% of the floor"
+
+
 def test_no_room_is_a_sketch():
     assert judged(closed=(), areas_m2=()).worth == witness_table.SKETCH
 

@@ -21,7 +21,7 @@ from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 
 _MOST_POINTS = 600_000  # more cost time, and make no estimate better
 _LEAST_OF_GROUP = 100  # points of one scan at one wall: fewer show no bend
-_LEAST_WALLS = 5  # of which one may be bent
+_LEAST_WALLS = 4.0  # of equal weight: one that tells most may itself be bent
 _BINS = 16  # parts of a wall whose means show whether it is flat
 _MOST_BENT = 3.0  # mean square of these means by noise alone is 1
 _BOW_M = 0.0005  # no wall is flatter than that
@@ -151,17 +151,17 @@ def measure_common_bias(
     -------
     median_m, sure_m : float
         The median, and how far the quartile nearer to 0 is from it: 0 where 0 lies between them.
-        NaN of fewer than five walls.
+        NaN where fewer than four walls tell it, or as many as these of unequal weight.
     """
     settings = RangeBiasSettings(np.inf, max_incidence_deg)
     hits = _hits(rays, segments, settings, band_m, up)
     hits = hits.of(hits.summed(np.ones(len(hits.group)))[hits.group] >= _LEAST_OF_GROUP)
     if hits.n_groups:
         hits = hits.of(_are_flat(hits, np.zeros(int(hits.beam.max()) + 1))[hits.group])
-    if hits.n_groups < _LEAST_WALLS:
-        return np.nan, np.nan
     cosine = hits.level(hits.cosine)
     told = hits.summed(cosine**2)
+    if told.sum() ** 2 <= _LEAST_WALLS * (told**2).sum():
+        return np.nan, np.nan
     bias_m = -hits.summed(hits.level(hits.offset_m) * cosine) / np.maximum(told, ROUNDING)
     order = np.argsort(bias_m, kind="stable")
     share = np.cumsum(told[order]) / told.sum()

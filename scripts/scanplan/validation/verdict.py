@@ -73,7 +73,8 @@ def judge_plan(plan: FloorPlan) -> Verdict:
     areas_m2 = np.asarray(plan.rooms["area_m2"], float)
     share = float(areas_m2[closed].sum() / areas_m2.sum())
     counted = f"{closed.sum():,} of {say_count(len(closed), 'room')}"
-    gist = f"{counted} {'is' if closed.sum() == 1 else 'are'} closed, {share:.0%} of the floor"
+    verb = "is" if 1 in (closed.sum(), len(closed)) else "are"
+    gist = f"{counted} {verb} closed, {share:.0%} of the floor"
     if share >= _LEAST_CLOSED:
         return Verdict(PLAN, gist)
     open_rows = np.flatnonzero(~closed)
