@@ -516,6 +516,20 @@ def test_the_verdict_on_a_sheet_is_whole_and_has_its_remedy_if_there_is_room(rem
     assert said.endswith("cut it" if len(remedy) < 20 else "see summary.txt")
 
 
+def test_what_else_was_found_is_counted_on_the_sheet():
+    jump = Finding("map jump", 2.0, "it jumps", "carried", "cut")
+    apart = Finding("days apart", 2.0, "days apart", "two states", "part them")
+
+    def said(*findings):
+        sheet = composition.compose_sheet(plan(doubted=Doubts(findings=findings)))
+        words = [w.text for w in sheet.paper_words if w.element.startswith("title:VERDICT")]
+        return " ".join(words)
+
+    assert said(jump, apart).endswith("cut (1 more in summary.txt)")
+    assert said(apart).endswith("100% of the floor (1 more in summary.txt)")
+    assert said().endswith("100% of the floor")
+
+
 def test_accuracy_without_sigmas_is_not_known():
     walls = floorplan_making.walls() | {"sigma_offset_m": np.full(6, np.nan)}
     assert accuracy.state_accuracy(plan(walls=walls)) == "not known"

@@ -191,7 +191,7 @@ WITNESSES = {
         "ranges are in centimetres, or in another unit than metres",
         "give ranges and poses in metres",
     ),
-    # 9.5 mm in a basement; data sheets state 30 mm at most
+    # 7.1 mm in a hotel; data sheets state 30 mm at most
     "range offset": Witness(
         0.03,
         _METRES,

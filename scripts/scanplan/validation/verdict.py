@@ -28,12 +28,15 @@ class Verdict:
         Why, in a few words.
     cause, remedy : str
         Why it is likely so, and what would help; empty of a plan.
+    witness : str
+        By which finding; empty where rooms alone tell it.
     """
 
     worth: str
     gist: str
     cause: str = ""
     remedy: str = ""
+    witness: str = ""
 
     @property
     def head(self) -> str:
@@ -61,7 +64,8 @@ def judge_plan(plan: FloorPlan) -> Verdict:
     worth = worth_left(findings)
     if worth != PLAN:
         first = rank_findings([f for f in findings if not is_note(f)])[0]
-        return Verdict(worth, WITNESSES[first.witness].gist, first.cause, first.remedy)
+        gist = WITNESSES[first.witness].gist
+        return Verdict(worth, gist, first.cause, first.remedy, first.witness)
     closed = np.asarray(plan.rooms["closed"], bool)
     if len(closed) == 0:
         return Verdict(

@@ -21,7 +21,7 @@ from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_doubts
-from scanplan.validation.verdict import Verdict, judge_plan
+from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
@@ -113,7 +113,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Frame", f"map, {turn}; north unknown", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
-        [("Verdict", _state_verdict(judge_plan(plan)), 3)],
+        [("Verdict", _state_verdict(plan), 3)],
     ]
     height = (y1 - y0) / len(rows)
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
@@ -131,14 +131,21 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             x += width
 
 
-def _state_verdict(verdict: Verdict) -> str:
-    """Return as much of a verdict as two lines of the title block hold, the remedy before why."""
+def _state_verdict(plan: FloorPlan) -> str:
+    """Return as much of a verdict as two lines of the title block hold, the remedy before why.
+
+    What else was found is counted.
+    """
+    verdict = judge_plan(plan)
+    n_more = len(plan.doubted.findings) - (verdict.witness != "")
+    more = f" ({n_more} more in summary.txt)" if n_more else ""
     width_mm = 3 * Paper.COLUMN - _HEAD_MM - Paper.GAP
-    known = [verdict.line, f"{verdict.head}; {verdict.remedy}"] if verdict.remedy else []
-    otherwise = f"{verdict.head}; see summary.txt" if known else verdict.head
+    if not verdict.remedy:
+        return f"{verdict.head}{more}"
+    known = [f"{text}{more}" for text in (verdict.line, f"{verdict.head}; {verdict.remedy}")]
     # what is cut off ends in an ellipsis
     fitting = (t for t in known if not wrap_text(t, Letters.SMALL, width_mm)[-1].endswith("…"))
-    return next(fitting, otherwise)
+    return next(fitting, f"{verdict.head}; see summary.txt")
 
 
 def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:
