@@ -37,7 +37,7 @@ def interpolate_poses(
     output : path-like
         poses.parquet.
     keep_every, max_step_m, max_turn_deg
-        See `candidates.choose_candidates`.
+        See `candidates.choose_candidates`; of stations each is one.
     max_gap_s, max_speed_m_s : float
         Longest time between two poses to interpolate over, and fastest way.
     moved : path-like, optional
@@ -65,6 +65,8 @@ def interpolate_poses(
             edges, resets = _join_resets(edges, max_speed_m_s)
             measured.append(resets)
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
+        if survey.pose_kind == pose_kind.STATIONS:
+            keep_every = 1
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
         measured.append(candidates.measure_standing(pose, covered))
         is_steady = np.ones(len(t_ns), bool)
@@ -126,12 +128,16 @@ def _log_unsteady(is_steady: BoolArray, chosen: IntArray) -> None:
 
 
 def _log_pose_kind(kind: str, *, is_set: bool) -> None:
-    found = "as none are recorded" if kind == pose_kind.ESTIMATED else "found by topic and frame"
+    found = {
+        pose_kind.ESTIMATED: "as none are recorded",
+        pose_kind.STATIONS: "by the kind of file",
+    }.get(kind, "found by topic and frame")
     by = "set by advanced.input.pose_kind" if is_set else found
     of = {
         pose_kind.LOCALISER: "a localiser's, in its map",
         pose_kind.ODOMETRY: "odometry, which drifts",
         pose_kind.ESTIMATED: "estimated from the clouds, and drift",
+        pose_kind.STATIONS: "stations', surveyed: each is a candidate and stays within millimetres",
     }
     means = ": they count as motions between scans, and loops are looked for"
     meaning = of[kind] + (means if pose_kind.is_drifting(kind) else "")

@@ -18,7 +18,6 @@ from scanplan.registration import (
 from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.registration.constraints import neighbour_reach_m
 from scanplan.registration.misreading import Misreading
-from scanplan.registration.registration_settings import registration_settings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, witnesses, workers
 from scanplan.store import doubts, lineage, scan_cache, schemas, tables
@@ -64,7 +63,7 @@ def register_scans(
         Cores to use; the result does not depend on it.
     """
     lineage.check_recordings(poses, made_of)
-    limits = registration_settings(settings)
+    limits = registered_candidates.read_settings(poses, settings)
     t_ns = tables.read_table(poses, schemas.POSES, ["t_ns"])["t_ns"]
     with (
         scan_cache.open_scan_cache(scans) as raw,

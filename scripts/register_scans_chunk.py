@@ -6,7 +6,6 @@ from typing import Any
 from scanplan.project import provenance
 from scanplan.registration import results
 from scanplan.registration.candidates import chunk_files, registered_candidates
-from scanplan.registration.registration_settings import registration_settings
 from scanplan.stage import log, workers
 from scanplan.store import lineage, scan_cache
 from scanplan.types import FilePath
@@ -60,7 +59,7 @@ def register_scans_chunk(
             thinned,
             run,
             reading=reading,
-            settings=registration_settings(settings),
+            settings=registered_candidates.read_settings(poses, settings),
             moved=moved,
             chunk=chunk,
         )

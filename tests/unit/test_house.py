@@ -40,6 +40,8 @@ HOMES = {
         "lab/simulation/raycast.py",
     ),
     "small_gicp": ("registration/",),
+    "pye57": ("recordings/stations/e57_stations.py",),
+    "defusedxml": ("recordings/integrity/e57_header.py",),
     "kiss_icp": ("recordings/motion/lidar_odometry.py",),
     "yaml": ("project/",),
     "jsonschema": ("project/",),

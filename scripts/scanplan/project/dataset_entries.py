@@ -17,6 +17,7 @@ SCANS_FOLDER = "scans"
 ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 _PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
+STATION_SUFFIXES = (".e57", ".ptx")
 
 
 def is_rosbag2_metadata(file: FilePath) -> bool:
@@ -85,6 +86,16 @@ def list_scans(folder: Path) -> list[Path]:
             f"{scans}: has no poses; write {poses} with lines `t tx ty tz qx qy qz qw`"
         )
     return [*clouds, poses] if clouds else []
+
+
+def list_stations(folder: Path) -> list[Path]:
+    """Return the files of stations in a folder."""
+    return [e for e in visible(folder) if is_of_stations(e) and not e.is_dir()]
+
+
+def is_of_stations(file: Path) -> bool:
+    """Return whether a file is one of stations, by its name."""
+    return file.suffix.lower() in STATION_SUFFIXES
 
 
 def check_unfinished(path: Path) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 from scanplan.project import dataset_entries, texts
-from scanplan.project.dataset_entries import POSES_FILE, ROSBAG2_SUFFIXES, SCANS_FOLDER
+from scanplan.project.dataset_entries import POSES_FILE, ROSBAG2_SUFFIXES
 from scanplan.project.dataset_entries import is_rosbag2_metadata as is_rosbag2_metadata
 
 SETTINGS_FILE = "dataset.yaml"
@@ -24,12 +24,14 @@ TARGETS = ("all", *OF_LABORATORY)
 """What a command may ask for beside files."""
 _TAKEN = (*TARGETS, "summary.html", "summary.parquet")
 """What else stands under results/, or is asked for by its name."""
-_BAG_SUFFIXES = (".bag", ".mcap", ".db3")
+_FILE_SUFFIXES = (".bag", ".mcap", ".db3", *dataset_entries.STATION_SUFFIXES)
+"""Of files that are a dataset by themselves."""
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
-    "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), or scans/*.pcd|*.ply with poses.tum"
+    "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), scans/*.pcd|*.ply with poses.tum,"
+    " or stations (*.e57, *.ptx)"
 )
 
 
@@ -53,7 +55,8 @@ def dataset_name(path: FilePath) -> str:
         If no letter or digit is left, or the name starts with a dot or repeats itself endlessly.
     """
     path = Path(os.path.normpath(Path.cwd() / path))
-    is_file = path.suffix in (*_BAG_SUFFIXES, *_SURVEY_SUFFIXES) and not path.is_dir()
+    is_file = _is_dataset_file(path) or path.suffix in _SURVEY_SUFFIXES
+    is_file = is_file and not path.is_dir()
     return name_results(str(path), path.stem if is_file else path.name)
 
 
@@ -113,7 +116,7 @@ def find_files(path: FilePath) -> list[str]:
     Parameters
     ----------
     path : path-like
-        A dataset folder, a rosbag2 folder, or a single recording (.bag, .mcap, .db3).
+        A dataset folder, a rosbag2 folder, or a single recording (.bag, .mcap, .db3, .e57, .ptx).
 
     Returns
     -------
@@ -123,8 +126,8 @@ def find_files(path: FilePath) -> list[str]:
     Raises
     ------
     StageError
-        If nothing is there, nothing of it is accepted, recordings and a scan folder stand side by
-        side, or a file is empty or was not closed by the recorder.
+        If nothing is there, nothing of it is accepted, recordings of two kinds stand side by side,
+        or a file is empty or was not closed by the recorder.
     """
     path = Path(path)
     if not path.exists():
@@ -133,23 +136,23 @@ def find_files(path: FilePath) -> list[str]:
             " `make run DATASET=PATH` or `--config dataset=PATH`"
         )
     try:
-        recordings = [path] if path.is_file() else dataset_entries.list_recordings(path)
-        scans = [] if path.is_file() else dataset_entries.list_scans(path)
+        kinds = [[path]] if path.is_file() else _list_kinds(path)
         dataset_entries.check_unfinished(path)
     except OSError as error:
         raise StageError(
             f"{path}: cannot be read ({error.strerror}); check its permissions"
         ) from None
-    if path.is_file() and path.suffix not in _BAG_SUFFIXES:
+    if path.is_file() and not _is_dataset_file(path):
         raise StageError(
-            f"{path}: is no recording; accepted are a dataset folder or {', '.join(_BAG_SUFFIXES)}"
+            f"{path}: is no recording; accepted are a dataset folder or {', '.join(_FILE_SUFFIXES)}"
         )
-    if recordings and scans:
+    filled = [kind for kind in kinds if kind]
+    if len(filled) > 1:
         raise StageError(
-            f"{path}: holds both recordings ({recordings[0].name}) and {SCANS_FOLDER}/"
-            f" with {POSES_FILE}; keep one of the two"
+            f"{path}: holds recordings of two kinds, both {filled[0][0].name} and"
+            f" {filled[1][0].name}; keep one of the two"
         )
-    files = sorted(recordings + scans)
+    files = sorted(file for kind in filled for file in kind)
     if not files:
         packed = [
             e.name for e in dataset_entries.visible(path) if e.suffix.lower() in _PACKED_SUFFIXES
@@ -159,6 +162,20 @@ def find_files(path: FilePath) -> list[str]:
     for file in files:
         dataset_entries.check_file(file)
     return [str(file) for file in files]
+
+
+def _list_kinds(folder: Path) -> list[list[Path]]:
+    """Return the files of each kind of recording that a folder may hold."""
+    return [
+        dataset_entries.list_recordings(folder),
+        dataset_entries.list_scans(folder),
+        dataset_entries.list_stations(folder),
+    ]
+
+
+def _is_dataset_file(path: Path) -> bool:
+    # stations' programs write suffixes in capitals, recorders do not
+    return path.suffix in _FILE_SUFFIXES or dataset_entries.is_of_stations(path)
 
 
 def group_recordings(files: Iterable[str]) -> list[str]:
@@ -186,3 +203,8 @@ def group_recordings(files: Iterable[str]) -> list[str]:
 def is_scan_folder(files: Iterable[str]) -> bool:
     """Return whether the files are recorded clouds with a pose file and not bags."""
     return any(Path(file).name == POSES_FILE for file in files)
+
+
+def is_of_stations(files: Iterable[str]) -> bool:
+    """Return whether the files are those of stations."""
+    return any(dataset_entries.is_of_stations(Path(file)) for file in files)

@@ -1,24 +1,21 @@
 """One survey as a folder of clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
-from functools import cached_property, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.recordings import clocks, clouds, frame_edges
-from scanplan.recordings.extrinsics import configured_extrinsics
-from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
+from scanplan.recordings import clocks, frame_edges
 from scanplan.recordings.integrity.pcd_size import check_pcd_size
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
-from scanplan.recordings.motion import lidar_odometry, point_times
-from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, LOCALISER
-from scanplan.recordings.survey_protocol import NamedChain
+from scanplan.recordings.motion.pose_kind import LOCALISER
+from scanplan.recordings.posed_scans import PosedScans
 from scanplan.stage import log
 from scanplan.store import tum
 from scanplan.types import Array, FloatArray, IntArray
@@ -27,7 +24,7 @@ _SECONDS = re.compile(r"\d+\.\d+")
 _NANOSECONDS = re.compile(r"\d{16,}")
 
 
-class ScanFolder:
+class ScanFolder(PosedScans):
     """Clouds in files and their poses.
 
     File names that are all stamps (decimal seconds with a point, or nanoseconds of 16 and more
@@ -38,13 +35,8 @@ class ScanFolder:
     ----------
     files : sequence of str
         The clouds and poses.tum.
-    base_from_sensor : (6,) float or None
-        x, y, z in metres, roll, pitch, yaw in degrees; by default the poses are the sensor's own.
-    min_range_m, max_range_m : float
-    max_damaged_share : float
-        Of the clouds that are read.
-    pose_kind : str, optional
-        By default the poses are a localiser's.
+    **reading
+        Keywords of `posed_scans.PosedScans`; by default the poses are a localiser's.
 
     Raises
     ------
@@ -52,125 +44,19 @@ class ScanFolder:
         If the poses are damaged or do not fit the files.
     """
 
-    def __init__(
-        self,
-        files: Sequence[str],
-        *,
-        base_from_sensor: Sequence[float] | None,
-        min_range_m: float,
-        max_range_m: float,
-        max_damaged_share: float = 0.0,
-        pose_kind: str = FOUND,
-    ) -> None:
+    def __init__(self, files: Sequence[str], **reading: Any) -> None:
         paths = [Path(file) for file in files]
-        self._poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
-        self._extrinsics = (
-            [] if base_from_sensor is None else configured_extrinsics(base_from_sensor)
+        poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
+        pose_ns, rows = tum.read_tum(poses_path)
+        track = _make_track(poses_path, pose_ns, rows)
+        self._clouds, stamps_ns = _order_clouds(
+            [path for path in paths if path != poses_path], pose_ns, poses_path
         )
-        self._max_damaged_share = max_damaged_share
-        self._damaged = DamagedClouds(0, max_damaged_share)
-        self._pose_kind = LOCALISER if pose_kind == FOUND else pose_kind
-        self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
-        pose_ns, rows = tum.read_tum(self._poses_path)
-        self._track = _make_track(self._poses_path, pose_ns, rows)
-        self._clouds, self._stamps_ns = _order_clouds(
-            [path for path in paths if path != self._poses_path], pose_ns, self._poses_path
-        )
+        super().__init__(str(poses_path), track, stamps_ns, LOCALISER, **reading)
 
-    @property
-    def planar(self) -> bool:
-        """Whether the clouds are flat throughout."""
-        return self._planar
-
-    @cached_property
-    def _planar(self) -> bool:
-        scans = map(self._read_scan, range(len(self._clouds)))
-        return clouds.are_scans_planar(scan.xyz_m for scan in scans)
-
-    @property
-    def sweep_times(self) -> point_times.TimeConvention | None:
-        """How the clouds' writer gives the time of a point, or None if it does not."""
-        return self._sweep_times
-
-    @cached_property
-    def _sweep_times(self) -> point_times.TimeConvention | None:
-        first = range(min(len(self._clouds), clouds.SCANS_TO_JUDGE))
-        return point_times.find_sweep_times(
-            ((self._times_in_range(i), self._stamps_ns[i]) for i in first),
-            str(self._poses_path.parent),
-        )
-
-    def _times_in_range(self, scan_id: int) -> Array | None:
-        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
-        if time_raw is None:
-            return None
-        return np.asarray(time_raw)[clouds.is_in_range(xyz_m, **self._limits)]
-
-    @property
-    def pose_kind(self) -> str:
-        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
-        return self._pose_kind
-
-    def stamps(self) -> IntArray:
-        """Return the stamps of all clouds, (n,) int64, in scan_id order."""
-        return self._stamps_ns
-
-    def describe_gaps(self) -> list[str]:
-        """Return nothing: it is one recording."""
-        return []
-
-    def describe_damage(self) -> list[str]:
-        """Return what could not be read so far, in sentences."""
-        return self._damaged.describe()
-
-    def pose_edges(self) -> list[frame_edges.FrameEdge]:
-        """Return the chain of transforms whose product is world_from_sensor."""
-        return [self._chosen_track, *self._extrinsics]
-
-    @cached_property
-    def _chosen_track(self) -> frame_edges.FrameEdge:
-        if self._pose_kind != ESTIMATED:
-            return self._track
-        missing = f"{self._poses_path.parent}: advanced.input.pose_kind is {ESTIMATED}"
-        return lidar_odometry.estimate_track(self, self._extrinsics, missing)
-
-    def motion_chains(self) -> list[NamedChain]:
-        """Return (name, edges) of all that states how the sensor moved: the poses."""
-        return [(str(self._poses_path), self.pose_edges())]
-
-    def scans(
-        self, wanted: Iterable[int], damaged: DamagedClouds | None = None
-    ) -> Iterator[clouds.Scan]:
-        """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.
-
-        Only these files are read. `damaged` is as in `survey_protocol.Survey.scans`.
-
-        Raises
-        ------
-        ValueError
-            If there is no scan of one of the numbers.
-        StageError
-            If too many files are damaged.
-        """
-        scan_ids = sorted({int(scan_id) for scan_id in wanted})
-        if scan_ids and not 0 <= scan_ids[0] <= scan_ids[-1] < len(self._clouds):
-            raise ValueError(
-                f"{self._poses_path.parent}: {len(self._clouds)} scans,"
-                f" asked for up to {scan_ids[-1]}"
-            )
-        self._damaged = damaged or DamagedClouds(len(scan_ids), self._max_damaged_share)
-        for scan_id in scan_ids:
-            read = partial(self._read_scan, scan_id, self.sweep_times)
-            yield self._damaged.read(scan_id, int(self._stamps_ns[scan_id]), read)
-
-    def _read_scan(
-        self, scan_id: int, sweep_times: point_times.TimeConvention | None = None
-    ) -> clouds.Scan:
-        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
-        stamp_ns = self._stamps_ns[scan_id]
-        return clouds.keep_in_range(
-            scan_id, stamp_ns, xyz_m, time_raw, sweep_times=sweep_times, **self._limits
-        )
+    def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
+        """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""
+        return _read_cloud(self._clouds[scan_id])
 
 
 def _make_track(poses_path: Path, pose_ns: IntArray, rows: FloatArray) -> frame_edges.FrameEdge:

@@ -1,8 +1,9 @@
-"""A survey as the stages see it: clouds and poses, from bags or from a folder of scans."""
+"""A survey as the stages see it: clouds and poses, from bags, a folder of scans, or stations."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Any
 
 from scanplan.project import dataset_files
@@ -97,6 +98,17 @@ def _open_recordings(
         from scanplan.recordings import scan_folder
 
         return scan_folder.ScanFolder(files, **common)
+    if dataset_files.is_of_stations(files):
+        from scanplan.recordings.stations import e57_stations, ptx_stations, station_scans
+
+        list_stations = {
+            ".e57": e57_stations.list_e57_stations,
+            ".ptx": ptx_stations.list_ptx_stations,
+        }
+        found = []
+        for path in map(Path, files):
+            found += list_stations[path.suffix.lower()](path)
+        return station_scans.StationScans(", ".join(files), found, **common)
     from scanplan.recordings import bags, recorded_survey
 
     opened = [

@@ -1,7 +1,7 @@
 """The settings of the registration: section `registration` of the configuration, typed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,9 @@ from scanplan.types import FloatArray, Settings
 
 FRAMES = "frames"
 """Scans are compared with the candidates before them, retained or not (thesis, algorithm 3)."""
+
+_SURVEYED_SIGMA_M = 0.003  # what surveyors' programs state of registered stations
+_SURVEYED_SIGMA_DEG = 0.02  # 2 mm at 5 m
 
 
 @dataclass(frozen=True)
@@ -172,6 +175,20 @@ class RegistrationSettings:
     limits: SequentialSettings
     graph: PoseGraphSettings
     drift: DriftSettings
+
+    def of_stations(self) -> "RegistrationSettings":
+        """Return them for surveyed poses: exact to millimetres, and kept though others show none.
+
+        Stations of two rooms share what is seen through a door.
+        """
+        surveyed = replace(
+            self.limits,
+            localiser_sigma_m=_SURVEYED_SIGMA_M,
+            localiser_sigma_deg=_SURVEYED_SIGMA_DEG,
+            localiser_sigma_tilt_deg=_SURVEYED_SIGMA_DEG,
+            anchor_apart_m=0.0,
+        )
+        return replace(self, limits=surveyed)
 
 
 def registration_settings(section: Settings) -> RegistrationSettings:

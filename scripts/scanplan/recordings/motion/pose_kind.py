@@ -8,6 +8,8 @@ LOCALISER = "localiser"
 ODOMETRY = "odometry"
 ESTIMATED = "estimated"
 """Odometry that is estimated from the clouds, whatever was recorded."""
+STATIONS = "stations"
+"""Poses that a surveyor's program has registered, of a scanner that stood still at each."""
 NOTE = "pose_kind"
 """Under this name a table of poses says which."""
 

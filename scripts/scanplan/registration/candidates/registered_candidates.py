@@ -17,7 +17,10 @@ from scanplan.recordings.survey import open_survey
 from scanplan.registration import batches, mapping, results
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
-from scanplan.registration.registration_settings import RegistrationSettings
+from scanplan.registration.registration_settings import (
+    RegistrationSettings,
+    registration_settings,
+)
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
 from scanplan.store import schemas, tables
@@ -82,6 +85,21 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
     is_odometry = pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
     priors = results.pose_matrices(columns)
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
+
+
+def read_settings(poses: FilePath, section: Settings) -> RegistrationSettings:
+    """Return the settings of registration as they hold for a survey's kind of poses.
+
+    Parameters
+    ----------
+    poses : path-like
+        poses.parquet.
+    section : dict
+        Section `registration` of the settings.
+    """
+    found = registration_settings(section)
+    kind = tables.read_note(poses, schemas.POSES, pose_kind.NOTE)
+    return found.of_stations() if kind == pose_kind.STATIONS else found
 
 
 def read_odometry(moved: FilePath, t_ns: IntArray) -> mapping.StepsBetween | None:

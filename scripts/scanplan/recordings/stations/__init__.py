@@ -1,0 +1,1 @@
+"""Stations: scans that were taken standing still, each with a pose of its own."""

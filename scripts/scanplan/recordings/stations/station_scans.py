@@ -1,0 +1,133 @@
+"""A survey of stations: few scans of many points, taken standing still, with surveyed poses."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from scanplan.errors import StageError
+from scanplan.geometry import se3
+from scanplan.recordings import frame_edges
+from scanplan.recordings.motion import point_times
+from scanplan.recordings.motion.pose_kind import STATIONS
+from scanplan.recordings.posed_scans import PosedScans
+from scanplan.recordings.stations.angular_grid import STEP_DEG, AngularGrid
+from scanplan.stage import log
+from scanplan.types import Array, FloatArray
+
+_APART_NS = 3600 * 10**9
+"""Between stations, whose files seldom say when: so long that no limit of a drive's pace is met."""
+_MOST_BEHIND = 0.08
+"""Of directions: simulated stations have 0.002 at most, a real one 0.012, merged clouds 0.10 to
+0.67."""
+_FARTHEST_M = 8000.0  # from the origin: beyond it single precision leaves less than a millimetre
+_ROUND_M = 100.0  # an origin that is moved is moved by whole steps, which people can add
+_RIGID = 1e-3  # what files round a pose to stays within it
+
+
+@dataclass(frozen=True)
+class Station:
+    """One scan in a file.
+
+    Attributes
+    ----------
+    name : str
+        The file and which of its scans, for errors.
+    world_from_sensor : (4, 4) float64
+    read_blocks : callable
+        Returns an iterator over its points (n, 3) float64 in the sensor's frame, some at a time;
+        NaN where a beam did not return.
+    """
+
+    name: str
+    world_from_sensor: FloatArray
+    read_blocks: Callable[[], Iterator[FloatArray]]
+
+
+class StationScans(PosedScans):
+    """Stations in the order of their files; each is thinned as it is read.
+
+    Parameters
+    ----------
+    where : str
+        What they are from, for errors.
+    stations : list of Station
+    **reading
+        Keywords of `posed_scans.PosedScans`; by default the poses are surveyed.
+
+    Raises
+    ------
+    StageError
+        If there is none, a pose is none, or several have one and the same.
+    """
+
+    def __init__(self, where: str, stations: Sequence[Station], **reading: Any) -> None:
+        if not stations:
+            raise StageError(f"{where}: holds no scan with points; export it again")
+        self._stations = stations
+        poses = np.array([station.world_from_sensor for station in stations])
+        _check_poses(stations, poses)
+        stamps_ns = np.arange(1, len(stations) + 1) * _APART_NS
+        xyz_m, quat = se3.split_pose(_near_origin(where, poses))
+        track = frame_edges.FrameEdge("map", "sensor", xyz_m, quat, stamps_ns)
+        super().__init__(where, track, stamps_ns, STATIONS, **reading)
+        log.log_line(
+            f"{where}: {len(stations)} stations, of each a point for every {STEP_DEG} degrees of"
+            " direction"
+        )
+
+    @property
+    def planar(self) -> bool:
+        """Whether they were measured in one plane: never."""
+        return False
+
+    @property
+    def sweep_times(self) -> point_times.TimeConvention | None:
+        """No times: a station stands still."""
+        return None
+
+    def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
+        """Return the thinned points of a station: see `posed_scans.PosedScans.read_cloud`."""
+        station = self._stations[scan_id]
+        grid = AngularGrid()
+        for xyz_m in station.read_blocks():
+            grid.add(xyz_m)
+        if grid.share_behind > _MOST_BEHIND:
+            raise StageError(
+                f"{station.name}: in {grid.share_behind:.0%} of the directions from its scanner"
+                " points lie behind others, which no scanner sees: it is a merged cloud, or its"
+                f" pose is not where it stood (at most {_MOST_BEHIND:.0%}); export each station as"
+                " a scan of its own, with its pose"
+            )
+        return grid.xyz_m, None
+
+
+def _check_poses(stations: Sequence[Station], poses: FloatArray) -> None:
+    """Refuse poses that are none, and scans that were not placed."""
+    for station, pose in zip(stations, poses, strict=True):
+        turn = pose[:3, :3]
+        is_rigid = np.isfinite(pose).all() and np.abs(turn @ turn.T - np.eye(3)).max() < _RIGID
+        if not is_rigid or np.linalg.det(turn) < 0:
+            raise StageError(
+                f"{station.name}: its pose is no rotation and place in metres; export it again"
+            )
+    if len(stations) > 1 and np.ptp(poses, axis=0).max() == 0:
+        raise StageError(
+            f"{stations[-1].name}: all {len(stations)} scans have the same pose: they are not"
+            " registered, or it was left out; export them with their poses"
+        )
+
+
+def _near_origin(where: str, poses: FloatArray) -> FloatArray:
+    """Return poses moved by whole hundreds of metres where they are far from the origin."""
+    if np.abs(poses[:, :3, 3]).max() < _FARTHEST_M:
+        return poses
+    origin_m = np.append(np.round(poses[0, :2, 3] / _ROUND_M) * _ROUND_M, 0.0)
+    log.log_warning(
+        f"{where}: coordinates of up to {np.abs(poses[:, :3, 3]).max():,.0f} m: the plan's origin"
+        f" is x {origin_m[0]:.0f}, y {origin_m[1]:.0f} of the file"
+    )
+    moved = poses.copy()
+    moved[:, :3, 3] -= origin_m
+    return moved

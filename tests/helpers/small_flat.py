@@ -1,0 +1,148 @@
+"""A bare flat of three rooms to scan, the plans of it, and what two plans have in common."""
+
+import json
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import shapely
+from scipy.spatial.transform import Rotation
+
+from faults.making import make_plan
+from helpers import bag_making
+from scanplan.lab.buildings import drawing_file, extrusion
+from scanplan.lab.simulation import raycast
+from scanplan.project import dataset_files
+from scanplan.store import schemas, tables
+
+DRAWING = Path(__file__).resolve().parents[2] / "config/buildings/tiny_office.geojson"
+WAY = np.array([(0.7, 0.9), (5.2, 0.9), (4.9, 0.9), (4.9, 3.0), (1.4, 2.9), (1.4, 0.9)])
+STATIONS = np.array([(1.4, 0.8, 1.5), (4.6, 0.95, 1.5), (1.6, 2.9, 1.45), (4.2, 2.8, 1.5)])
+"""Two in the corridor, one in each room, map frame."""
+_STEP_M = 0.15
+_NOISE_M = 0.004
+WALL_M = 0.02
+DOOR_M = 0.05  # ends of openings are cells of rays
+SAME_ROOM = 0.97  # of what two outlines cover: niches beside furniture may differ
+
+
+@cache
+def scene():
+    drawn = json.loads(DRAWING.read_text())
+    drawn["features"] = [f for f in drawn["features"] if f["properties"]["kind"] != "furniture"]
+    floor = drawing_file.parse_drawing(json.dumps(drawn), DRAWING.name)
+    return raycast.RayScene(extrusion.make_building_mesh(floor))
+
+
+def see(world_from_sensor, direction, seed=0):
+    """Return the points (n, 3) that beams (n, 3) of a sensor end at, its frame; NaN without one."""
+    turned = (direction @ world_from_sensor[:3, :3].T).astype(np.float32)
+    hits = scene().opaque_hits(world_from_sensor[None, :3, 3], turned[None])
+    noise_m = np.random.default_rng(seed).normal(0, _NOISE_M, len(direction))
+    range_m = np.where(np.isfinite(hits.range_m), hits.range_m + noise_m, np.nan)
+    return direction * range_m[:, None]
+
+
+def directions(n_azimuth, elevations_deg):
+    """Return unit vectors of all azimuths at all elevations, column by column."""
+    azimuth = np.arange(n_azimuth) * 2 * np.pi / n_azimuth
+    turn, rise = np.meshgrid(azimuth, np.radians(elevations_deg), indexing="ij")
+    level = np.cos(rise)
+    stacked = np.stack([level * np.cos(turn), level * np.sin(turn), np.sin(rise)], axis=-1)
+    return stacked.reshape(-1, 3)
+
+
+def station_poses():
+    """Return where the stations stood, (4, 4, 4), each turned otherwise and levelled to 0.2 deg."""
+    lean = np.radians([(0.1, -0.1, 10.0), (-0.2, 0.1, 100.0), (0.0, 0.1, 215.0), (0.1, 0.2, -50.0)])
+    poses = [np.eye(4) for _ in STATIONS]
+    for pose, place, (roll, pitch, yaw) in zip(poses, STATIONS, lean, strict=True):
+        pose[:3, :3] = Rotation.from_euler("xyz", [roll, pitch, yaw]).as_matrix()
+        pose[:3, 3] = place
+    return np.array(poses)
+
+
+def station_points(step_deg=0.5):
+    """Return what each station sees, (n, 3) in its frame, NaN where nothing returns."""
+    elevation = np.arange(-60, 85, step_deg)
+    beams = directions(round(360 / step_deg), elevation)
+    return [see(pose, beams, seed) for seed, pose in enumerate(station_poses())]
+
+
+def way_poses():
+    """Return poses (n, 4, 4) of a sensor along a way through all rooms, turned along it."""
+    step = np.diff(WAY, axis=0)
+    length = np.linalg.norm(step, axis=1)
+    along = np.concatenate([[0], np.cumsum(length)])
+    at = np.arange(0, along[-1], _STEP_M)
+    xy = np.column_stack([np.interp(at, along, WAY[:, i]) for i in (0, 1)])
+    poses = np.tile(np.eye(4), (len(at), 1, 1))
+    poses[:, :2, 3] = xy
+    poses[:, 2, 3] = 0.6
+    return poses
+
+
+def sweep(pose, seed):
+    """Return what 16 beams of a turning sensor see, (n, 3) float32 in its frame."""
+    points = see(pose, directions(900, np.arange(-15, 16, 2)), seed)
+    return points[np.isfinite(points).all(axis=1)].astype(np.float32)
+
+
+def write_bag(folder):
+    """Write a drive through the flat as a bag, a scan a second; return the dataset's files."""
+    maker = bag_making.Maker("ros1")
+    entries = []
+    for i, pose in enumerate(way_poses()):
+        t_ns = bag_making.START_NS + i * 10**9
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
+        entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
+    maker.write(folder / "run", entries)
+    return dataset_files.find_files(folder)
+
+
+def plan_of(folder, files, **topics):
+    """Make the plan of a dataset in a folder; return its walls, openings and rooms as columns."""
+    folder.mkdir(parents=True, exist_ok=True)
+    make_plan(folder, files, **topics)
+    kinds = {"walls": schemas.PLAN_WALLS, "openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
+    return {
+        name: tables.read_table(folder / f"plan_{name}.parquet", kind, allow_empty=True)
+        for name, kind in kinds.items()
+    }
+
+
+def list_walls(plan):
+    """Return the ends (n, 2, 2) of the walls, each along an axis, the lesser end first."""
+    walls = plan["walls"]
+    ends = np.column_stack([walls[name] for name in ("x0_m", "y0_m", "x1_m", "y1_m")])
+    return np.sort(ends.reshape(-1, 2, 2), axis=1)
+
+
+def list_doors(plan):
+    """Return the middles of what people can go through, (n, 2)."""
+    openings = plan["openings"]
+    is_door = np.isin(openings["type"], ("door", "passage"))
+    middle = [(openings[f"{axis}0_m"] + openings[f"{axis}1_m"]) / 2 for axis in "xy"]
+    return np.column_stack(middle)[is_door]
+
+
+def list_rooms(plan):
+    """Return the outlines of the rooms."""
+    return [shapely.from_wkb(data) for data in plan["rooms"]["geometry"]]
+
+
+def assert_same_plan(plan, other):
+    """Hold one plan's walls, doors and rooms against another's."""
+    walls, other_walls = (list_walls(each) for each in (plan, other))
+    apart_m = np.abs(walls[:, None] - other_walls[None]).max(axis=(2, 3))
+    assert len(walls) == len(other_walls)
+    assert (apart_m.min(axis=1) < WALL_M).all() and (apart_m.min(axis=0) < WALL_M).all()
+    doors, other_doors = (list_doors(each) for each in (plan, other))
+    apart_m = np.linalg.norm(doors[:, None] - other_doors[None], axis=2)
+    assert len(doors) == len(other_doors)
+    assert (apart_m.min(axis=1) < DOOR_M).all() and (apart_m.min(axis=0) < DOOR_M).all()
+    rooms, other_rooms = (list_rooms(each) for each in (plan, other))
+    assert len(rooms) == len(other_rooms)
+    for room in rooms:
+        shared = [room.intersection(each).area / room.union(each).area for each in other_rooms]
+        assert max(shared) > SAME_ROOM

@@ -1,0 +1,1 @@
+# What the project names of pye57, whose compiled part has no types.
