@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from faults.making import make_plan
 from helpers import bag_making
+from scanplan.geometry import se3
 from scanplan.lab.buildings import drawing_file, extrusion
 from scanplan.lab.simulation import raycast
 from scanplan.project import dataset_files
@@ -20,6 +21,7 @@ WAY = np.array([(0.7, 0.9), (5.2, 0.9), (4.9, 0.9), (4.9, 3.0), (1.4, 2.9), (1.4
 STATIONS = np.array([(1.4, 0.8, 1.5), (4.6, 0.95, 1.5), (1.6, 2.9, 1.45), (4.2, 2.8, 1.5)])
 """Two in the corridor, one in each room, map frame."""
 _STEP_M = 0.15
+SWEEP_S = 0.1
 _NOISE_M = 0.004
 WALL_M = 0.02
 DOOR_M = 0.05  # ends of openings are cells of rays
@@ -98,6 +100,13 @@ def write_bag(folder):
         entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
     maker.write(folder / "run", entries)
     return dataset_files.find_files(folder)
+
+
+def map_points():
+    """Return what a drive sees as points in the map (n, 3), and when each was measured (n,)."""
+    seen = [se3.transform_points(pose, sweep(pose, i)) for i, pose in enumerate(way_poses())]
+    since_s = [i * SWEEP_S + np.linspace(0, 0.9 * SWEEP_S, len(xyz)) for i, xyz in enumerate(seen)]
+    return np.concatenate(seen), np.concatenate(since_s)
 
 
 def plan_of(folder, files, **topics):

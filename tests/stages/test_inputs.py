@@ -1,8 +1,9 @@
 """A flat recorded in every form that is read: its plans are one and the same."""
 
+import numpy as np
 import pytest
 
-from helpers import e57_making, ptx_making, small_flat
+from helpers import e57_making, las_making, ptx_making, small_flat
 from scanplan.project import dataset_files
 
 
@@ -18,4 +19,15 @@ def bag_plan(tmp_path_factory):
 def test_stations(tmp_path, bag_plan, name, write):
     write(tmp_path / name, small_flat.station_poses(), small_flat.station_points())
     plan = small_flat.plan_of(tmp_path / "plan", dataset_files.find_files(tmp_path / name))
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
+    xyz_m, since_s = small_flat.map_points()
+    order = np.random.default_rng(4).permutation(len(xyz_m))
+    las_making.write_las(tmp_path / "flat/a.laz", xyz_m[order], 1000 + since_s[order])
+    way = small_flat.way_poses()[:, :3, 3]
+    at_s = 1000 + (np.arange(len(way)) + 0.5) * small_flat.SWEEP_S
+    las_making.write_trajectory(tmp_path / "flat/trajectory.txt", at_s, way)
+    plan = small_flat.plan_of(tmp_path / "plan", dataset_files.find_files(tmp_path / "flat"))
     small_flat.assert_same_plan(plan, bag_plan)

@@ -47,7 +47,7 @@ HOMES = {
     "jsonschema": ("project/",),
     "ezdxf": ("exports/",),
     "ifcopenshell": ("exports/", "lab/buildings/"),
-    "laspy": ("exports/data/point_cloud.py",),
+    "laspy": ("exports/data/point_cloud.py", "recordings/las_points.py"),
     "sqlite3": ("exports/data/geopackage.py",),
     "trimesh": ("lab/buildings/",),
     "jinja2": ("report/", "thesis/"),

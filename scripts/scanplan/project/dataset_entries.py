@@ -18,6 +18,8 @@ ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 _PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 STATION_SUFFIXES = (".e57", ".ptx")
+_LAS_SUFFIXES = (".las", ".laz")
+_TRAJECTORIES = ("trajectory.txt", "trajectory.csv", "trajectory.tum")
 
 
 def is_rosbag2_metadata(file: FilePath) -> bool:
@@ -96,6 +98,30 @@ def list_stations(folder: Path) -> list[Path]:
 def is_of_stations(file: Path) -> bool:
     """Return whether a file is one of stations, by its name."""
     return file.suffix.lower() in STATION_SUFFIXES
+
+
+def list_las_drive(folder: Path) -> list[Path]:
+    """Return the clouds and the trajectory of a drive; nothing where there are no clouds.
+
+    Raises
+    ------
+    StageError
+        If there is no trajectory, or more than one.
+    """
+    files = [entry for entry in visible(folder) if not entry.is_dir()]
+    clouds = [file for file in files if file.suffix.lower() in _LAS_SUFFIXES]
+    trajectories = [file for file in files if is_trajectory(file)]
+    if clouds and len(trajectories) != 1:
+        raise StageError(
+            f"{clouds[0]}: {len(trajectories)} of {', '.join(_TRAJECTORIES)} beside it; give one,"
+            " with lines `t x y z`: where the sensor was"
+        )
+    return [*clouds, *trajectories] if clouds else []
+
+
+def is_trajectory(file: Path) -> bool:
+    """Return whether a file says where the sensor of a .las was, by its name."""
+    return file.name in _TRAJECTORIES
 
 
 def check_unfinished(path: Path) -> None:

@@ -31,7 +31,7 @@ _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
     "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), scans/*.pcd|*.ply with poses.tum,"
-    " or stations (*.e57, *.ptx)"
+    " stations (*.e57, *.ptx), or *.las|*.laz with a trajectory (trajectory.txt)"
 )
 
 
@@ -165,12 +165,14 @@ def find_files(path: FilePath) -> list[str]:
 
 
 def _list_kinds(folder: Path) -> list[list[Path]]:
-    """Return the files of each kind of recording that a folder may hold."""
-    return [
-        dataset_entries.list_recordings(folder),
-        dataset_entries.list_scans(folder),
-        dataset_entries.list_stations(folder),
-    ]
+    """Return the files of each kind of recording that a folder holds.
+
+    Beside a robot's recordings others are exports of them, which are not read.
+    """
+    kinds = [dataset_entries.list_recordings(folder), dataset_entries.list_scans(folder)]
+    if any(kinds):
+        return kinds
+    return [dataset_entries.list_stations(folder), dataset_entries.list_las_drive(folder)]
 
 
 def _is_dataset_file(path: Path) -> bool:
@@ -208,3 +210,13 @@ def is_scan_folder(files: Iterable[str]) -> bool:
 def is_of_stations(files: Iterable[str]) -> bool:
     """Return whether the files are those of stations."""
     return any(dataset_entries.is_of_stations(Path(file)) for file in files)
+
+
+def is_las_drive(files: Iterable[str]) -> bool:
+    """Return whether the files are points in the map with a trajectory."""
+    return any(map(is_trajectory, files))
+
+
+def is_trajectory(file: str) -> bool:
+    """Return whether a file of a dataset says where the sensor of a .las was."""
+    return dataset_entries.is_trajectory(Path(file))

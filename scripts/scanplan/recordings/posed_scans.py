@@ -71,6 +71,10 @@ class PosedScans(ABC):
         """
         ...
 
+    def read_ahead(self, scan_ids: Sequence[int]) -> None:
+        """Take note of which clouds will be read next, in this order."""
+        return
+
     @property
     def planar(self) -> bool:
         """Whether the clouds are flat throughout."""
@@ -150,6 +154,7 @@ class PosedScans(ABC):
         if scan_ids and not 0 <= scan_ids[0] <= scan_ids[-1] < n_scans:
             raise ValueError(f"{self.where}: {n_scans} scans, asked for up to {scan_ids[-1]}")
         self._damaged = damaged or DamagedClouds(len(scan_ids), self._max_damaged_share)
+        self.read_ahead(scan_ids)
         for scan_id in scan_ids:
             read = partial(self._read_scan, scan_id, self.sweep_times)
             yield self._damaged.read(scan_id, int(self._stamps_ns[scan_id]), read)
@@ -162,3 +167,17 @@ class PosedScans(ABC):
         return clouds.keep_in_range(
             scan_id, stamp_ns, xyz_m, time_raw, sweep_times=sweep_times, **self._limits
         )
+
+
+class UntimedScans(PosedScans):
+    """Scans in space, of a sensor that stood still or with points that are free of its motion."""
+
+    @property
+    def planar(self) -> bool:
+        """Whether they were measured in one plane: never."""
+        return False
+
+    @property
+    def sweep_times(self) -> point_times.TimeConvention | None:
+        """No times: there is no motion to take out."""
+        return None

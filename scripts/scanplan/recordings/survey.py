@@ -98,6 +98,10 @@ def _open_recordings(
         from scanplan.recordings import scan_folder
 
         return scan_folder.ScanFolder(files, **common)
+    if dataset_files.is_las_drive(files):
+        from scanplan.recordings import las_drive
+
+        return las_drive.LasDrive(files, **common)
     if dataset_files.is_of_stations(files):
         from scanplan.recordings.stations import e57_stations, ptx_stations, station_scans
 

@@ -8,10 +8,9 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import frame_edges
-from scanplan.recordings.motion import point_times
+from scanplan.recordings import frame_edges, map_origin
 from scanplan.recordings.motion.pose_kind import STATIONS
-from scanplan.recordings.posed_scans import PosedScans
+from scanplan.recordings.posed_scans import UntimedScans
 from scanplan.recordings.stations.angular_grid import STEP_DEG, AngularGrid
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
@@ -21,8 +20,6 @@ _APART_NS = 3600 * 10**9
 _MOST_BEHIND = 0.08
 """Of directions: simulated stations have 0.002 at most, a real one 0.012, merged clouds 0.10 to
 0.67."""
-_FARTHEST_M = 8000.0  # from the origin: beyond it single precision leaves less than a millimetre
-_ROUND_M = 100.0  # an origin that is moved is moved by whole steps, which people can add
 _RIGID = 1e-3  # what files round a pose to stays within it
 
 
@@ -45,7 +42,7 @@ class Station:
     read_blocks: Callable[[], Iterator[FloatArray]]
 
 
-class StationScans(PosedScans):
+class StationScans(UntimedScans):
     """Stations in the order of their files; each is thinned as it is read.
 
     Parameters
@@ -69,23 +66,14 @@ class StationScans(PosedScans):
         poses = np.array([station.world_from_sensor for station in stations])
         _check_poses(stations, poses)
         stamps_ns = np.arange(1, len(stations) + 1) * _APART_NS
-        xyz_m, quat = se3.split_pose(_near_origin(where, poses))
+        xyz_m, quat = se3.split_pose(poses)
+        xyz_m = xyz_m - map_origin.find_origin(where, xyz_m)
         track = frame_edges.FrameEdge("map", "sensor", xyz_m, quat, stamps_ns)
         super().__init__(where, track, stamps_ns, STATIONS, **reading)
         log.log_line(
             f"{where}: {len(stations)} stations, of each a point for every {STEP_DEG} degrees of"
             " direction"
         )
-
-    @property
-    def planar(self) -> bool:
-        """Whether they were measured in one plane: never."""
-        return False
-
-    @property
-    def sweep_times(self) -> point_times.TimeConvention | None:
-        """No times: a station stands still."""
-        return None
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return the thinned points of a station: see `posed_scans.PosedScans.read_cloud`."""
@@ -117,17 +105,3 @@ def _check_poses(stations: Sequence[Station], poses: FloatArray) -> None:
             f"{stations[-1].name}: all {len(stations)} scans have the same pose: they are not"
             " registered, or it was left out; export them with their poses"
         )
-
-
-def _near_origin(where: str, poses: FloatArray) -> FloatArray:
-    """Return poses moved by whole hundreds of metres where they are far from the origin."""
-    if np.abs(poses[:, :3, 3]).max() < _FARTHEST_M:
-        return poses
-    origin_m = np.append(np.round(poses[0, :2, 3] / _ROUND_M) * _ROUND_M, 0.0)
-    log.log_warning(
-        f"{where}: coordinates of up to {np.abs(poses[:, :3, 3]).max():,.0f} m: the plan's origin"
-        f" is x {origin_m[0]:.0f}, y {origin_m[1]:.0f} of the file"
-    )
-    moved = poses.copy()
-    moved[:, :3, 3] -= origin_m
-    return moved
