@@ -106,6 +106,11 @@ class Maker:
             ),
         )
 
+    def path(self, t_ns, poses, frame="camera_init"):
+        """A Path of (t_ns, xyz, quat) poses."""
+        stamped = [self.pose_stamped(*pose, frame=frame) for pose in poses]
+        return self.make("nav_msgs/msg/Path", header=self.header(t_ns, frame), poses=stamped)
+
     def transforms(self, *items):
         """A TFMessage of (t_ns, parent, child, xyz, quat) items."""
         return self.make(

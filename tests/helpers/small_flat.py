@@ -102,6 +102,23 @@ def write_bag(folder):
     return dataset_files.find_files(folder)
 
 
+def write_lio(folder):
+    """Write the drive as a LIO publishes it: clouds in the map, odometry of a body that turns."""
+    maker = bag_making.Maker("ros1")
+    entries = []
+    poses = way_poses()
+    yaw = 0.6 * np.sin(np.arange(len(poses)) / 4)
+    poses[:, :3, :3] = Rotation.from_euler("z", yaw[:, None]).as_matrix()
+    for i, pose in enumerate(poses):
+        t_ns = bag_making.START_NS + i * 10**9
+        (xyz_m,), (quat,) = se3.split_pose(pose[None])
+        odometry = maker.odometry(t_ns, xyz_m, quat, frame="camera_init", child="body")
+        cloud = maker.cloud(t_ns, se3.transform_points(pose, sweep(pose, i)), frame="camera_init")
+        entries += [("/Odometry", t_ns, odometry), ("/cloud_registered", t_ns, cloud)]
+    maker.write(folder / "run", entries)
+    return dataset_files.find_files(folder)
+
+
 def map_points():
     """Return what a drive sees as points in the map (n, 3), and when each was measured (n,)."""
     seen = [se3.transform_points(pose, sweep(pose, i)) for i, pose in enumerate(way_poses())]

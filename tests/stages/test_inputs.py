@@ -31,3 +31,8 @@ def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
     las_making.write_trajectory(tmp_path / "flat/trajectory.txt", at_s, way)
     plan = small_flat.plan_of(tmp_path / "plan", dataset_files.find_files(tmp_path / "flat"))
     small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_clouds_in_the_map(tmp_path, bag_plan):
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_lio(tmp_path))
+    small_flat.assert_same_plan(plan, bag_plan)

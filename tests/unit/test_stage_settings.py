@@ -85,9 +85,7 @@ def leaves(values):
             yield value
 
 
-@pytest.mark.parametrize(
-    "key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW]
-)
+@pytest.mark.parametrize("key", [k for k, _ in iterate_keys(SCHEMA) if k not in OF_THE_WORKFLOW])
 def test_every_key_reaches_a_stage(key):
     changed = 77.5  # no default
     assert changed not in leaves(received(SETTINGS))

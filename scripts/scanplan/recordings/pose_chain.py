@@ -133,6 +133,9 @@ class PoseChains:
         if self._extrinsics:
             return [track, *self._extrinsics]
         sensor = self._index.sensor_frame
+        if sensor == track.parent:
+            # what tf says of the two is the pose once more
+            return [track]
         return [
             track,
             *find_extrinsics(self._tree, track.child, sensor, track.parent, self._where),

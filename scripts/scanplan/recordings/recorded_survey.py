@@ -13,6 +13,7 @@ from scanplan.recordings import (
     frame_edges,
     messages,
     pose_chain,
+    registered_clouds,
     small_messages,
     topics,
 )
@@ -128,7 +129,8 @@ class BagSurvey:
         )
 
     def _times_in_range(self, scan: _RawScan) -> Array | None:
-        if scan.time_raw is None:
+        # points in the map are free of the sensor's motion
+        if scan.time_raw is None or self._is_in_map:
             return None
         return scan.time_raw[clouds.is_in_range(scan.xyz_m, **self._limits)]
 
@@ -351,4 +353,26 @@ class BagSurvey:
     def _keep_in_range(
         self, scan: _RawScan, sweep_times: point_times.TimeConvention | None = None
     ) -> clouds.Scan:
+        if self._is_in_map:
+            pose = self._world_from_sensor[scan.scan_id]
+            scan = scan._replace(xyz_m=registered_clouds.to_sensor(scan.xyz_m, pose))
         return clouds.keep_in_range(*scan, sweep_times=sweep_times, **self._limits)
+
+    @cached_property
+    def _is_in_map(self) -> bool:
+        """Whether the clouds' points are in the map; asked where they are given in its frame."""
+        if self._pose_source is None or self._cloud.msgtype == topics.LASER_SCAN:
+            return False
+        if self._index.sensor_frame != self.map_frame:
+            return False
+
+        def read(rows: IntArray) -> Iterator[FloatArray]:
+            for cloud in self._cloud_messages(set(rows.tolist())):
+                yield registered_clouds.read_finite(lambda cloud=cloud: self._decode(cloud).xyz_m)
+
+        return registered_clouds.are_in_map(self._world_from_sensor, read, str(self._cloud))
+
+    @cached_property
+    def _world_from_sensor(self) -> FloatArray:
+        """The poses (n, 4, 4) of all clouds, NaN before the first and after the last."""
+        return frame_edges.chain_poses(self.pose_edges(), self.stamps(), max_gap_s=np.inf)[0]

@@ -1,8 +1,9 @@
 """One survey as a folder of clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,11 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.recordings import clocks, frame_edges
+from scanplan.recordings import clocks, frame_edges, registered_clouds
 from scanplan.recordings.integrity.pcd_size import check_pcd_size
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
-from scanplan.recordings.motion.pose_kind import LOCALISER
+from scanplan.recordings.motion.pose_kind import ESTIMATED, LOCALISER
 from scanplan.recordings.posed_scans import PosedScans
 from scanplan.stage import log
 from scanplan.store import tum
@@ -56,7 +57,27 @@ class ScanFolder(PosedScans):
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""
-        return _read_cloud(self._clouds[scan_id])
+        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
+        if not self._is_in_map:
+            return xyz_m, time_raw
+        # points in the map are free of the sensor's motion
+        return registered_clouds.to_sensor(xyz_m, self._world_from_sensor[scan_id]), None
+
+    @cached_property
+    def _is_in_map(self) -> bool:
+        if self.pose_kind == ESTIMATED:
+            return False
+
+        def read(rows: IntArray) -> Iterator[FloatArray]:
+            for row in rows.tolist():
+                path = self._clouds[row]
+                yield registered_clouds.read_finite(lambda path=path: _read_cloud(path)[0])
+
+        return registered_clouds.are_in_map(self._world_from_sensor, read, self.where)
+
+    @cached_property
+    def _world_from_sensor(self) -> FloatArray:
+        return frame_edges.chain_poses(self.pose_edges(), self.stamps(), max_gap_s=np.inf)[0]
 
 
 def _make_track(poses_path: Path, pose_ns: IntArray, rows: FloatArray) -> frame_edges.FrameEdge:

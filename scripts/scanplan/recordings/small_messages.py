@@ -8,7 +8,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.recordings import clocks, messages, topics
-from scanplan.recordings.bags import Bag
+from scanplan.recordings.bags import Bag, Connection
 from scanplan.stage import log
 from scanplan.types import IntArray
 
@@ -63,6 +63,7 @@ class SmallMessages:
         self.transforms: dict[TransformKey, list[TransformSample]] = {}
         self._clouds: list[_CloudSample] = []
         self._n_odd_covariances: Counter[str] = Counter()
+        self._paths: dict[str, dict[int, PoseSample]] = {}
 
     def add_cloud(self, t_ns: int, frame: str, receive_ns: int) -> None:
         """Add the stamp of a cloud."""
@@ -81,6 +82,16 @@ class SmallMessages:
         if not np.isfinite(getattr(message.pose, "covariance", 0)).all():
             self._n_odd_covariances[topic] += 1
         self.poses.setdefault(topic, []).append(sample)
+
+    def add_path(self, topic: str, message: Any) -> None:
+        """Add the poses of a path; a later message says better where one was."""
+        parent = messages.clean_frame_name(message.header.frame_id)
+        known = self._paths.setdefault(topic, {})
+        for item in message.poses:
+            t_ns = messages.stamp_to_ns(item.header.stamp)
+            # when a pose was first received is not known
+            known[t_ns] = PoseSample(t_ns, t_ns, messages.pose_to_row(item.pose), parent, "")
+        self.poses[topic] = [known[t_ns] for t_ns in sorted(known) if t_ns]
 
     def add_transforms(self, message: Any, receive_ns: int, static: bool) -> None:
         """Add the transforms of a TFMessage."""
@@ -166,6 +177,7 @@ def read_small_messages(
     damaged: set[topics.Topic] = set()
     items = ((bag, message) for bag in bags for message in bag.messages(wanted))
     total = sum(topic.count for topic in wanted.values())
+    last_paths: dict[str, tuple[Bag, Connection, bytes]] = {}
     for bag, message in log.report_progress(items, "read_recordings", total, "messages"):
         connection, receive_ns, raw = message
         topic = wanted[connection.topic]
@@ -176,6 +188,14 @@ def read_small_messages(
             index.add_transforms(
                 bag.decode(connection, raw), receive_ns, topics.is_static_tf(topic)
             )
+        elif topic.msgtype == topics.PATH:
+            # where it lies may be closed once the recording is gone through
+            data = raw if isinstance(raw, bytes) else raw.read()
+            before = last_paths.get(topic.name)
+            # a path that grew says all again
+            if before is not None and len(data) <= len(before[2]):
+                _add_path(index, *before)
+            last_paths[topic.name] = (bag, connection, data)
         elif topic not in damaged:
             try:
                 index.add_pose(topic.name, bag.decode(connection, raw), receive_ns)
@@ -185,5 +205,11 @@ def read_small_messages(
                 log.log_line(f"{error}; {topic} is left out")
                 damaged.add(topic)
                 index.poses.pop(topic.name, None)
+    for before in last_paths.values():
+        _add_path(index, *before)
     index.finish(where, cloud)
     return index
+
+
+def _add_path(index: SmallMessages, bag: Bag, connection: Connection, data: bytes) -> None:
+    index.add_path(connection.topic, bag.decode(connection, data))

@@ -10,9 +10,11 @@ LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
 CLOUDS = (POINT_CLOUD, LASER_SCAN)
 POSES = ("geometry_msgs/msg/PoseWithCovarianceStamped", "geometry_msgs/msg/PoseStamped", ODOMETRY)
+PATH = "nav_msgs/msg/Path"
+"""All poses so far in each message; planners' have the same type."""
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
-# what operators send to a robot has the types of what a localiser reports
-_COMMANDS = ("initialpose", "goal", "goal_pose")
+# what operators and planners send to a robot has the types of what a localiser reports
+_COMMANDS = ("initialpose", "goal", "goal_pose", "plan", "global_plan", "local_plan")
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def merge_topics(topics: Iterable[Topic], where: str) -> list[Topic]:
     for topic in topics:
         before = merged.get(topic.name, Topic(topic.name, topic.msgtype, 0))
         msgtypes = {before.msgtype, topic.msgtype}
-        if len(msgtypes) > 1 and msgtypes & {*CLOUDS, *POSES}:
+        if len(msgtypes) > 1 and msgtypes & {*CLOUDS, *POSES, PATH}:
             raise StageError(
                 f"{where}: topic {topic.name} is {before.msgtype} here and {topic.msgtype} there;"
                 " split the dataset into one folder each"
@@ -96,22 +98,22 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
 
 
 def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic | None:
-    """Choose the topic of the poses: the first type of `POSES` that occurs, else tf.
+    """Choose the topic of the poses: the first type of `POSES` that occurs, else tf, else a path.
 
     Parameters and errors are those of `choose_cloud_topic`, with `input.pose_topic`.
 
     Returns
     -------
     Topic or None
-        Of a type of `POSES`, or of `TRANSFORMS` if the poses come from tf; None if no poses are
-        recorded.
+        Of a type of `POSES`, of `TRANSFORMS` if the poses come from tf, or `PATH`; None if no poses
+        are recorded.
     """
     tf = [t for t in topics if t.msgtype in TRANSFORMS and not is_static_tf(t)]
-    candidates = [t for t in topics if t.msgtype in POSES] + tf
+    candidates = [t for t in topics if t.msgtype in (*POSES, PATH)] + tf
     if wanted:
         return _named(candidates, wanted, where, "input.pose_topic")
     filled = [t for t in candidates if t.count and _last_part(t) not in _COMMANDS]
-    for msgtypes in (*((pose,) for pose in POSES), TRANSFORMS):
+    for msgtypes in (*((pose,) for pose in POSES), TRANSFORMS, (PATH,)):
         of_type = [t for t in filled if t.msgtype in msgtypes]
         if of_type:
             return _only(of_type, where, "input.pose_topic")
@@ -121,8 +123,8 @@ def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -
 def describe_missing_poses(topics: Sequence[Topic], where: str) -> str:
     """Return that a recording has no poses, as the begin of a line on what to do."""
     return (
-        f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry"
-        f" or /tf); topics: {_list(topics)}"
+        f"{where}: no pose topic with messages (PoseWithCovarianceStamped, PoseStamped, Odometry,"
+        f" /tf or Path); topics: {_list(topics)}"
     )
 
 

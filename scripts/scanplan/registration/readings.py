@@ -8,20 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
+from scanplan.recordings import scan_pairs
 from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.types import FloatArray, IntArray
 
-_PAIRS = 12  # enough for a mean; a pair takes a few milliseconds a reading
-_LEAST_PAIRS = 3  # of fewer a jump of the map between two scans is most
-_POINTS = 600  # of a scan: shares of fewer scatter
-_NEAR_M = 0.1  # of another point, by ranges and by how far apart points are
-_ARM_M = 3.0  # what a turn moves a wall by: walls of rooms are so far away
-_MOTION_M = (0.4, 4.0)  # of a pair: less tells readings not apart, beyond it scans share little
-_LEAST_MET = 0.5  # the right reading has 0.6 to 0.95, others 0.25 at most
-_MORE = 0.2  # than as the scans were read
 _DELAYS_S = (-1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0)  # of clocks: nearer hardly show
 _FOOT_M = 0.3048
 _TILTS_DEG = (-10.0, -5.0, 5.0, 10.0)  # of a mount; nearer ones are known by the nearest
@@ -207,13 +199,13 @@ def find_reading(
         See `list_readings`.
     """
     known = np.flatnonzero(np.isfinite(world_from_sensor).all(axis=(1, 2)))
-    first = _choose_pairs(world_from_sensor[known])
-    if len(first) < _LEAST_PAIRS:
+    first = scan_pairs.choose_pairs(world_from_sensor[known])
+    if len(first) < scan_pairs.LEAST_PAIRS:
         extent_m = np.ptp(world_from_sensor[known, :3, 3], axis=0) if len(known) > 1 else np.inf
         return _STILL if np.max(extent_m) < _STILL_M else UNTRIED
     rows = np.unique([first, first + 1])
     clouds = list(read_points(known[rows]))
-    thinned = [cloud[:: max(1, len(cloud) // _POINTS)] for cloud in clouds]
+    thinned = [scan_pairs.thin_points(cloud) for cloud in clouds]
     readings = list_readings(world_from_sensor[known], t_ns[known], rows, moved_at)
     places = np.searchsorted(rows, first).tolist()
     # of a clock that is off most pairs meet, as the sensor went steadily: the mean tells it apart
@@ -222,7 +214,7 @@ def find_reading(
         for reading in readings
     ]
     best = int(np.argmax(met))
-    if met[best] < max(_LEAST_MET, met[0] + _MORE):
+    if met[best] < max(scan_pairs.LEAST_MET, met[0] + scan_pairs.MORE_MET):
         return NONE_MEETS
     cause, remedy = readings[best].wrong
     shares = (
@@ -230,19 +222,6 @@ def find_reading(
         f" {met[0]:.0%})"
     )
     return Misreading(f"{cause}{shares}", remedy)
-
-
-def _choose_pairs(world_from_sensor: FloatArray) -> IntArray:
-    """Return rows that the sensor moved and turned after, up to the next one."""
-    moved = se3.invert_pose(world_from_sensor[:-1]) @ world_from_sensor[1:]
-    turn_rad = np.array([se3.turn_between_rad(np.eye(4), each) for each in moved])
-    motion_m = np.linalg.norm(moved[:, :3, 3], axis=1) + _ARM_M * turn_rad
-    rows = np.flatnonzero((motion_m > _MOTION_M[0]) & (motion_m < _MOTION_M[1]))
-    # by turns most readings differ: half of the pairs have them
-    by_turn = rows[np.argsort(-turn_rad[rows], kind="stable")][: _PAIRS // 2]
-    others = np.setdiff1d(rows, by_turn)
-    spread = np.linspace(0, len(others) - 1, _PAIRS - len(by_turn)).astype(int)
-    return np.union1d(by_turn, others[spread] if len(others) else others)
 
 
 def _measure_met(
@@ -253,14 +232,10 @@ def _measure_met(
     planar: bool,
 ) -> float:
     """Return which share of a scan's points lies on the one before."""
-    if len(clouds[i]) == 0 or len(thinned[i + 1]) == 0:
-        return 0.0
-    scale = np.cbrt(abs(np.linalg.det(reading.cloud)))
-    size = 2 if planar else 3
-    moved = se3.invert_pose(reading.poses[i]) @ reading.poses[i + 1]
-    target_m = clouds[i] @ reading.cloud.T
-    source_m = se3.transform_points(moved, thinned[i + 1] @ reading.cloud.T)
-    # in a smaller unit points are nearer, but for their noise
-    near_m = _NEAR_M * np.sqrt(scale)
-    apart_m, _ = KDTree(target_m[:, :size]).query(source_m[:, :size], distance_upper_bound=near_m)
-    return float(np.isfinite(apart_m).mean())
+    return scan_pairs.measure_met(
+        clouds[i] @ reading.cloud.T,
+        thinned[i + 1] @ reading.cloud.T,
+        se3.invert_pose(reading.poses[i]) @ reading.poses[i + 1],
+        planar=planar,
+        scale=float(np.cbrt(abs(np.linalg.det(reading.cloud)))),
+    )

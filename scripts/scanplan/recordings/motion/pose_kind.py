@@ -33,7 +33,8 @@ def find_pose_kind(msgtype: str, frame: str) -> str:
     name = frame.rsplit("/", 1)[-1]
     if name == "map":
         return LOCALISER
-    return ODOMETRY if name == "odom" or msgtype == topics.ODOMETRY else LOCALISER
+    is_odometry = name == "odom" or msgtype in (topics.ODOMETRY, topics.PATH)
+    return ODOMETRY if is_odometry else LOCALISER
 
 
 def is_drifting(kind: str) -> bool:
