@@ -20,6 +20,12 @@ KINDS = (
     "mcap",
     "mcap_zstd",
 )
+LIVOX_CLOUD = (
+    "std_msgs/Header header\nuint64 timebase\nuint32 point_num\nuint8 lidar_id\nuint8[3] rsvd\n"
+)
+LIVOX_POINT = "uint32 offset_time\nfloat32 x\nfloat32 y\nfloat32 z\n" + "".join(
+    f"uint8 {name}\n" for name in ("reflectivity", "tag", "line")
+)
 NUMPY_TYPES = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
 
 
@@ -38,6 +44,10 @@ class Maker:
         if not self.ros2:
             transforms = "geometry_msgs/TransformStamped[] transforms"
             self.store.register(get_types_from_msg(transforms, "tf2_msgs/msg/TFMessage"))
+        for package in ("livox_ros_driver", "livox_ros_driver2"):
+            point = f"MSG: {package}/CustomPoint\n{LIVOX_POINT}"
+            text = f"{LIVOX_CLOUD}CustomPoint[] points\n{'=' * 80}\n{point}"
+            self.store.register(get_types_from_msg(text, f"{package}/msg/CustomMsg"))
 
     def make(self, msgtype, **fields):
         return self.store.types[msgtype](**fields)
@@ -66,6 +76,56 @@ class Maker:
             "sensor_msgs/msg/LaserScan",
             header=self.header(t_ns, frame),
             **vars(laser_scan(ranges, **overrides)),
+        )
+
+    def multi_echo(self, t_ns, ranges, frame="laser"):
+        """A MultiEchoLaserScan of the first echoes given, NaN for none, each with one behind it."""
+        echoes = [[] if np.isnan(first) else [first, first + 1.0] for first in ranges]
+        values = vars(laser_scan(ranges)) | {
+            "ranges": [self._echo(each) for each in echoes],
+            "intensities": [],
+        }
+        msgtype = "sensor_msgs/msg/MultiEchoLaserScan"
+        return self.make(msgtype, header=self.header(t_ns, frame), **values)
+
+    def _echo(self, ranges):
+        return self.make("sensor_msgs/msg/LaserEcho", echoes=np.array(ranges, np.float32))
+
+    def livox(self, t_ns, xyz_m, offset_ns, package="livox_ros_driver2", frame="lidar"):
+        """A CustomMsg of points (n, 3), each so many nanoseconds after the stamp."""
+        rows = zip(np.asarray(xyz_m, float).tolist(), map(int, offset_ns), strict=True)
+        points = [
+            self.make(
+                f"{package}/msg/CustomPoint",
+                **{"offset_time": ns, "reflectivity": 0, "tag": 0, "line": 0},
+                **dict(zip("xyz", xyz, strict=True)),
+            )
+            for xyz, ns in rows
+        ]
+        return self.make(
+            f"{package}/msg/CustomMsg",
+            header=self.header(t_ns, frame),
+            timebase=int(t_ns),
+            point_num=len(points),
+            lidar_id=0,
+            rsvd=np.zeros(3, np.uint8),
+            points=points,
+        )
+
+    def old_cloud(self, t_ns, xyz_m, time_s, frame="lidar"):
+        """A PointCloud of points (n, 3) with a channel of times."""
+        points = [
+            self.make("geometry_msgs/msg/Point32", **dict(zip("xyz", xyz, strict=True)))
+            for xyz in np.asarray(xyz_m, float).tolist()
+        ]
+        times = self.make(
+            "sensor_msgs/msg/ChannelFloat32", name="time", values=np.asarray(time_s, np.float32)
+        )
+        return self.make(
+            "sensor_msgs/msg/PointCloud",
+            header=self.header(t_ns, frame),
+            points=points,
+            channels=[times],
         )
 
     def pose(self, xyz, quat):

@@ -14,6 +14,9 @@ from scanplan.types import Array, FloatArray
 _POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 TIME_FIELDS = ("time", "t", "timestamp")
 """Names that drivers give to the time of a point."""
+_A_LITTLE_M = 0.002  # what drivers take off range_max that it may not be taken for a return
+_NOISE_M = 0.05  # of simulated ranges, which are clipped at range_max or go beyond
+_FEWEST_PILED = 5  # beams: fewer may end at a surface
 _SPAN_SLACK = 0.02  # of angles that drivers round to a degree; lasers see 60 degrees and more
 
 
@@ -120,7 +123,11 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
         If the angles of the beams are not given, those of more than one turn, or others than those
         of the first beam and the last say.
     """
-    range_m = np.asarray(message.ranges, np.float64).reshape(-1)
+    return read_ranges(message, np.asarray(message.ranges, np.float64).reshape(-1))
+
+
+def read_ranges(message: Any, range_m: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+    """Turn ranges (n,) of a message with angles as a LaserScan's into points: see there."""
     beam = np.arange(len(range_m))
     angle_rad = message.angle_min + beam * message.angle_increment
     if len(range_m) > 1 and (message.angle_increment == 0 or not np.isfinite(angle_rad).all()):
@@ -136,12 +143,28 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
             " these may be degrees"
         )
     _check_span(message, len(range_m))
-    # range_max itself is what many drivers report for "no return"
-    limit_m = message.range_max if message.range_max > 0 else np.inf
+    limit_m = _find_limit_m(range_m, message.range_max if message.range_max > 0 else np.inf)
     range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
     xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
     step_s = float(message.time_increment)
     return xyz_m.astype(np.float32), beam * step_s if step_s > 0 else None
+
+
+def _find_limit_m(range_m: FloatArray, most_m: float) -> float:
+    """Return the range from which on beams (n,) did not return.
+
+    `range_max` itself is what many drivers report then; some a little less, simulators with noise
+    about it. Surfaces do not end so many beams at the very end of what a sensor measures.
+    """
+    beyond = range_m[(range_m >= most_m) & np.isfinite(range_m)]
+    # a code is the same in all beams, and says nothing of those before it
+    is_noisy = len(beyond) >= _FEWEST_PILED and np.ptp(beyond) > 0
+    for less_m, n_least in ((_A_LITTLE_M, 0), (_NOISE_M, len(beyond) / 4 if is_noisy else np.inf)):
+        n_below = np.count_nonzero((range_m >= most_m - less_m) & (range_m < most_m))
+        n_before = np.count_nonzero((range_m >= most_m - 2 * less_m) & (range_m < most_m)) - n_below
+        if n_below >= max(n_least, _FEWEST_PILED) and n_below > 2 * n_before:
+            return most_m - less_m
+    return most_m
 
 
 def _check_span(message: Any, n_beams: int) -> None:

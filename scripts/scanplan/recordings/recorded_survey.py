@@ -10,6 +10,7 @@ from scanplan.errors import StageError
 from scanplan.recordings import (
     clocks,
     clouds,
+    driver_messages,
     frame_edges,
     messages,
     pose_chain,
@@ -26,6 +27,14 @@ from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, find_pose_kin
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
+
+_READERS = {
+    topics.POINT_CLOUD: messages.read_point_cloud,
+    topics.LASER_SCAN: messages.read_laser_scan,
+    topics.MULTI_ECHO: driver_messages.read_multi_echo,
+    topics.OLD_POINT_CLOUD: driver_messages.read_old_point_cloud,
+    **dict.fromkeys(topics.LIVOX, driver_messages.read_livox),
+}
 
 
 class _RawScan(NamedTuple):
@@ -110,7 +119,7 @@ class BagSurvey:
 
     @cached_property
     def _planar(self) -> bool:
-        if self._cloud.msgtype == topics.LASER_SCAN:
+        if self._cloud.msgtype in topics.LASERS:
             return True
         return clouds.are_scans_planar(self._keep_in_range(scan).xyz_m for scan in self._first)
 
@@ -121,7 +130,7 @@ class BagSurvey:
 
     @cached_property
     def _sweep_times(self) -> point_times.TimeConvention | None:
-        is_laser = self._cloud.msgtype == topics.LASER_SCAN
+        is_laser = self._cloud.msgtype in topics.LASERS
         return point_times.find_sweep_times(
             ((self._times_in_range(scan), scan.t_ns) for scan in self._first),
             str(self._cloud),
@@ -340,10 +349,8 @@ class BagSurvey:
         connection, _, raw = cloud.message
         t_ns = bag.header(connection, raw)[0] or self.stamps()[cloud.scan_id]
         message = bag.decode(connection, raw)
-        is_laser = connection.msgtype == topics.LASER_SCAN
-        read = messages.read_laser_scan if is_laser else messages.read_point_cloud
         try:
-            return _RawScan(cloud.scan_id, t_ns, *read(message))
+            return _RawScan(cloud.scan_id, t_ns, *_READERS[connection.msgtype](message))
         except StageError as error:
             raise StageError(
                 f"{bag.path}: topic {connection.topic}, scan {cloud.scan_id} at"
@@ -361,7 +368,7 @@ class BagSurvey:
     @cached_property
     def _is_in_map(self) -> bool:
         """Whether the clouds' points are in the map; asked where they are given in its frame."""
-        if self._pose_source is None or self._cloud.msgtype == topics.LASER_SCAN:
+        if self._pose_source is None or self._cloud.msgtype in topics.LASERS:
             return False
         if self._index.sensor_frame != self.map_frame:
             return False

@@ -8,7 +8,26 @@ from scanplan.errors import StageError
 POINT_CLOUD = "sensor_msgs/msg/PointCloud2"
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 ODOMETRY = "nav_msgs/msg/Odometry"
+MULTI_ECHO = "sensor_msgs/msg/MultiEchoLaserScan"
+OLD_POINT_CLOUD = "sensor_msgs/msg/PointCloud"
+LIVOX = tuple(
+    f"{package}/msg/CustomMsg"
+    for package in ("livox_ros_driver", "livox_ros_driver2", "livox_interfaces")
+)
+LASERS = (LASER_SCAN, MULTI_ECHO)
 CLOUDS = (POINT_CLOUD, LASER_SCAN)
+DRIVERS_CLOUDS = (MULTI_ECHO, OLD_POINT_CLOUD, *LIVOX)
+"""Taken where none of `CLOUDS` has messages: drivers often publish both."""
+_MADE_BY = {
+    "velodyne_msgs/msg/VelodyneScan": "velodyne_pointcloud",
+    "ouster_ros/msg/PacketMsg": "os_cloud of ouster_ros",
+    "ouster_sensor_msgs/msg/PacketMsg": "os_cloud of ouster_ros",
+    "hesai_ros_driver/msg/UdpFrame": "hesai_ros_driver (source_type 3)",
+    "pandar_msgs/msg/PandarScan": "nebula or the Pandar driver",
+    "rslidar_msg/msg/RslidarPacket": "rslidar_sdk (msg_source 2)",
+    "rslidar_msgs/msg/rslidarScan": "rslidar_sdk (msg_source 2)",
+}
+"""Drivers' packets, and which node makes clouds of them."""
 POSES = ("geometry_msgs/msg/PoseWithCovarianceStamped", "geometry_msgs/msg/PoseStamped", ODOMETRY)
 PATH = "nav_msgs/msg/Path"
 """All poses so far in each message; planners' have the same type."""
@@ -52,7 +71,7 @@ def merge_topics(topics: Iterable[Topic], where: str) -> list[Topic]:
     for topic in topics:
         before = merged.get(topic.name, Topic(topic.name, topic.msgtype, 0))
         msgtypes = {before.msgtype, topic.msgtype}
-        if len(msgtypes) > 1 and msgtypes & {*CLOUDS, *POSES, PATH}:
+        if len(msgtypes) > 1 and msgtypes & {*CLOUDS, *DRIVERS_CLOUDS, *POSES, PATH}:
             raise StageError(
                 f"{where}: topic {topic.name} is {before.msgtype} here and {topic.msgtype} there;"
                 " split the dataset into one folder each"
@@ -81,14 +100,24 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
     StageError
         If there is none, more than one and none wanted, or it has no messages.
     """
+    of_drivers = [t for t in topics if t.msgtype in DRIVERS_CLOUDS]
     candidates = [t for t in topics if t.msgtype in CLOUDS]
+    if wanted or not any(topic.count for topic in candidates):
+        candidates += of_drivers
     if wanted:
         return _named(candidates, wanted, where, "input.cloud_topic")
     filled = [t for t in candidates if t.count]
     if not candidates:
+        packets = [f"{t}: {_MADE_BY[t.msgtype]}" for t in topics if t.msgtype in _MADE_BY]
+        remedy = "record the laser scanner too"
+        if packets:
+            remedy = (
+                f"play it into the node that makes clouds of its packets ({', '.join(packets)}),"
+                " and record these"
+            )
         raise StageError(
-            f"{where}: no cloud topic (PointCloud2 or LaserScan) to make a plan of;"
-            f" topics: {_list(topics)}; record the laser scanner too"
+            f"{where}: no cloud topic (PointCloud2, LaserScan, MultiEchoLaserScan, Livox's"
+            f" CustomMsg or PointCloud) to make a plan of; topics: {_list(topics)}; {remedy}"
         )
     if not filled:
         raise StageError(

@@ -15,6 +15,7 @@ from rosbags.typesys.store import Typestore
 
 from scanplan.errors import StageError
 from scanplan.recordings import topics
+from scanplan.recordings.driver_messages import LIVOX_DEFINITION
 from scanplan.stage import log
 
 _IDL_SEPARATOR = re.compile(r"={80}\n")
@@ -45,8 +46,14 @@ def own_store(connection: Connection, path: Path) -> Typestore | None:
 
 
 def standard_store(store: Stores) -> Typestore:
-    """Return the type store of a release, with the transforms that the one of ROS 1 lacks."""
+    """Return the type store of a release, with the transforms that the one of ROS 1 lacks.
+
+    It has Livox's messages, too, which no release knows.
+    """
     typestore = get_typestore(store)
+    for msgtype in topics.LIVOX:
+        text = LIVOX_DEFINITION.format(package=msgtype.partition("/")[0])
+        typestore.register(get_types_from_msg(text, msgtype))
     for msgtype in topics.TRANSFORMS:
         if msgtype not in typestore.fielddefs:
             typestore.register(
