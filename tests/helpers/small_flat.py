@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import shapely
+from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from faults.making import make_plan
 from helpers import bag_making
 from scanplan.geometry import se3
-from scanplan.lab.buildings import drawing_file, extrusion
+from scanplan.lab.buildings import drawing_file, drawn_floor, extrusion
 from scanplan.lab.simulation import raycast
 from scanplan.project import dataset_files
 from scanplan.store import schemas, tables
@@ -29,11 +30,15 @@ SAME_ROOM = 0.97  # of what two outlines cover: niches beside furniture may diff
 
 
 @cache
-def scene():
+def floor():
     drawn = json.loads(DRAWING.read_text())
     drawn["features"] = [f for f in drawn["features"] if f["properties"]["kind"] != "furniture"]
-    floor = drawing_file.parse_drawing(json.dumps(drawn), DRAWING.name)
-    return raycast.RayScene(extrusion.make_building_mesh(floor))
+    return drawing_file.parse_drawing(json.dumps(drawn), DRAWING.name)
+
+
+@cache
+def scene():
+    return raycast.RayScene(extrusion.make_building_mesh(floor()))
 
 
 def see(world_from_sensor, direction, seed=0):
@@ -119,6 +124,27 @@ def write_lio(folder):
     return dataset_files.find_files(folder)
 
 
+def write_grid_map(folder, cell_m=0.05):
+    """Write the flat as slam_toolbox saves a map: what walls show to the rooms is occupied."""
+    folder.mkdir(parents=True, exist_ok=True)
+    solid = drawn_floor.cut_walls(floor(), 0.6)
+    low_m = np.array([-0.475, -0.475])
+    n_rows, n_columns = (int(size / cell_m) for size in (6.0, 7.0))
+    x_m, y_m = (low_m[i] + (np.arange(n) + 0.5) * cell_m for i, n in enumerate((n_columns, n_rows)))
+    inside = shapely.box(0, 0, 6, 5).difference(solid)
+    grid = np.meshgrid(x_m, y_m)
+    free = shapely.contains_xy(inside, *grid)
+    surface = inside.boundary.difference(shapely.box(0, 0, 6, 5).boundary)
+    near = shapely.distance(shapely.points(*grid), surface) < cell_m / 2
+    grey = np.where(near, 0, np.where(free, 254, 205)).astype(np.uint8)
+    Image.fromarray(grey[::-1]).save(folder / "flat.pgm")
+    (folder / "flat.yaml").write_text(
+        f"image: flat.pgm\nmode: trinary\nresolution: {cell_m}\norigin: [-0.475, -0.475, 0]\n"
+        "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    return dataset_files.find_files(folder)
+
+
 def map_points():
     """Return what a drive sees as points in the map (n, 3), and when each was measured (n,)."""
     seen = [se3.transform_points(pose, sweep(pose, i)) for i, pose in enumerate(way_poses())]
@@ -157,16 +183,16 @@ def list_rooms(plan):
     return [shapely.from_wkb(data) for data in plan["rooms"]["geometry"]]
 
 
-def assert_same_plan(plan, other):
+def assert_same_plan(plan, other, *, wall_m=WALL_M, door_m=DOOR_M):
     """Hold one plan's walls, doors and rooms against another's."""
     walls, other_walls = (list_walls(each) for each in (plan, other))
     apart_m = np.abs(walls[:, None] - other_walls[None]).max(axis=(2, 3))
     assert len(walls) == len(other_walls)
-    assert (apart_m.min(axis=1) < WALL_M).all() and (apart_m.min(axis=0) < WALL_M).all()
+    assert (apart_m.min(axis=1) < wall_m).all() and (apart_m.min(axis=0) < wall_m).all()
     doors, other_doors = (list_doors(each) for each in (plan, other))
     apart_m = np.linalg.norm(doors[:, None] - other_doors[None], axis=2)
     assert len(doors) == len(other_doors)
-    assert (apart_m.min(axis=1) < DOOR_M).all() and (apart_m.min(axis=0) < DOOR_M).all()
+    assert (apart_m.min(axis=1) < door_m).all() and (apart_m.min(axis=0) < door_m).all()
     rooms, other_rooms = (list_rooms(each) for each in (plan, other))
     assert len(rooms) == len(other_rooms)
     for room in rooms:

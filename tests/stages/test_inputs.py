@@ -36,3 +36,8 @@ def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
 def test_clouds_in_the_map(tmp_path, bag_plan):
     plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_lio(tmp_path))
     small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_a_grid_map_to_half_a_cell(tmp_path, bag_plan):
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_grid_map(tmp_path / "flat"))
+    small_flat.assert_same_plan(plan, bag_plan, wall_m=0.03, door_m=0.06)

@@ -19,6 +19,7 @@ _PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 STATION_SUFFIXES = (".e57", ".ptx")
 _LAS_SUFFIXES = (".las", ".laz")
+_IMAGE = re.compile(r"^image\s*:\s*[\"']?([^\"'#\n]+)", re.MULTILINE)
 _TRAJECTORIES = ("trajectory.txt", "trajectory.csv", "trajectory.tum")
 
 
@@ -122,6 +123,36 @@ def list_las_drive(folder: Path) -> list[Path]:
 def is_trajectory(file: Path) -> bool:
     """Return whether a file says where the sensor of a .las was, by its name."""
     return file.name in _TRAJECTORIES
+
+
+def list_grid_map(folder: Path) -> list[Path]:
+    """Return the description of a grid map and its image; nothing where there is none.
+
+    Raises
+    ------
+    StageError
+        If there are several, or its image is not beside it.
+    """
+    found = []
+    for file in visible(folder):
+        if file.suffix not in (".yaml", ".yml") or not file.is_file():
+            continue
+        with file.open("rb") as content:
+            # a file of any size may have the name
+            text = content.read(io.DEFAULT_BUFFER_SIZE).decode(errors="replace")
+        image = _IMAGE.search(text)
+        if image and re.search(r"^resolution\s*:", text, re.MULTILINE):
+            found.append((file, folder / image[1].strip()))
+    if len(found) > 1:
+        raise StageError(
+            f"{folder}: has {len(found)} grid maps ({', '.join(file.name for file, _ in found)});"
+            " give each a folder of its own"
+        )
+    for file, image_path in found:
+        if not image_path.is_file():
+            raise StageError(f"{file}: its image {image_path} is not there; add it")
+        return [file, image_path]
+    return []
 
 
 def check_unfinished(path: Path) -> None:

@@ -31,7 +31,8 @@ _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
     "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), scans/*.pcd|*.ply with poses.tum,"
-    " stations (*.e57, *.ptx), or *.las|*.laz with a trajectory (trajectory.txt)"
+    " stations (*.e57, *.ptx), *.las|*.laz with a trajectory (trajectory.txt), or a grid map"
+    " (*.yaml with its image)"
 )
 
 
@@ -172,7 +173,11 @@ def _list_kinds(folder: Path) -> list[list[Path]]:
     kinds = [dataset_entries.list_recordings(folder), dataset_entries.list_scans(folder)]
     if any(kinds):
         return kinds
-    return [dataset_entries.list_stations(folder), dataset_entries.list_las_drive(folder)]
+    return [
+        dataset_entries.list_stations(folder),
+        dataset_entries.list_las_drive(folder),
+        dataset_entries.list_grid_map(folder),
+    ]
 
 
 def _is_dataset_file(path: Path) -> bool:
@@ -220,3 +225,10 @@ def is_las_drive(files: Iterable[str]) -> bool:
 def is_trajectory(file: str) -> bool:
     """Return whether a file of a dataset says where the sensor of a .las was."""
     return dataset_entries.is_trajectory(Path(file))
+
+
+def is_grid_map(files: Iterable[str]) -> bool:
+    """Return whether the files are a grid map: a description and an image."""
+    paths = [Path(file) for file in files]
+    described = [path for path in paths if path.suffix in _SURVEY_SUFFIXES]
+    return len(paths) == 2 and len(described) == 1 and not is_rosbag2_metadata(described[0])

@@ -98,6 +98,10 @@ def _open_recordings(
         from scanplan.recordings import scan_folder
 
         return scan_folder.ScanFolder(files, **common)
+    if dataset_files.is_grid_map(files):
+        from scanplan.recordings import grid_map_scans
+
+        return grid_map_scans.GridMapScans(files, **common)
     if dataset_files.is_las_drive(files):
         from scanplan.recordings import las_drive
 

@@ -1,0 +1,182 @@
+"""A survey of a grid map, as slam_toolbox and nav2 save it: scans that its cells would give.
+
+All that is known of the building is the map: where a robot could see free floor, and which cells
+were occupied. Scans are taken in free cells, level; beams end at the first occupied cell, and
+nowhere where the map is unknown.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from PIL import Image
+
+from scanplan.errors import StageError
+from scanplan.geometry import bitmap
+from scanplan.project import yaml_file
+from scanplan.recordings import frame_edges
+from scanplan.recordings.motion import point_times
+from scanplan.recordings.motion.pose_kind import STATIONS
+from scanplan.recordings.posed_scans import PosedScans
+from scanplan.stage import log
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
+
+_BEAMS = 720  # half a degree: a cell of 5 cm at 6 m
+_REACH_M = 20.0  # as lasers of robots have
+_APART_M = 0.75  # of places: each part of a room is seen from several
+_CLEAR_M = 0.25  # of obstacles: a robot's radius
+_MOST_CELLS = 64_000_000  # as of the map that is exported
+_FINEST_M, _COARSEST_M = 0.005, 0.25  # of a cell: coarser ones show no door
+_APART_NS = 3600 * 10**9  # of stamps: so long that no limit of a drive's pace is met
+_LEAST_PLACES = 3
+
+
+class _Grid(NamedTuple):
+    """A map's cells; row 0 is that of the least y."""
+
+    free: BoolArray
+    occupied: BoolArray
+    cell_m: float
+    low_m: FloatArray
+
+
+class GridMapScans(PosedScans):
+    """Level scans from places all over the free floor of a grid map.
+
+    Parameters
+    ----------
+    files : sequence of str
+        The map's .yaml and its image.
+    **reading
+        Keywords of `posed_scans.PosedScans`; by default the poses are exact.
+
+    Raises
+    ------
+    StageError
+        If they are no map, or show too little free floor.
+    """
+
+    def __init__(self, files: Sequence[str], **reading: Any) -> None:
+        path = next(Path(file) for file in files if file.endswith((".yaml", ".yml")))
+        self._grid = _read_grid(path)
+        cells = _choose_places(self._grid)
+        if len(cells) < _LEAST_PLACES:
+            raise StageError(
+                f"{path}: free floor for {len(cells)} places to look from, {_LEAST_PLACES} are"
+                " needed; check free_thresh, negate and resolution"
+            )
+        xy_m = self._grid.low_m + (cells[:, ::-1] + 0.5) * self._grid.cell_m
+        stamps_ns = np.arange(1, len(xy_m) + 1) * _APART_NS
+        level = np.tile([0.0, 0.0, 0.0, 1.0], (len(xy_m), 1))
+        xyz_m = np.column_stack([xy_m, np.zeros(len(xy_m))])
+        track = frame_edges.FrameEdge("map", "sensor", xyz_m, level, stamps_ns)
+        super().__init__(str(path), track, stamps_ns, STATIONS, **reading)
+        self._xy_m = xy_m
+        log.log_warning(
+            f"{path}: a grid map, and no scans: the plan is what {len(xy_m)} places in its free"
+            f" floor would see, to half a cell of {self._grid.cell_m:g} m; people and furniture of"
+            " the day are walls"
+        )
+
+    @property
+    def planar(self) -> bool:
+        """Whether they lie in one plane: always."""
+        return True
+
+    @property
+    def sweep_times(self) -> point_times.TimeConvention | None:
+        """No times: nothing moves."""
+        return None
+
+    def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
+        """Return where beams from a place end, (n, 3) float32: in the first occupied cell."""
+        angle = np.arange(_BEAMS) * 2 * np.pi / _BEAMS
+        way = np.column_stack([np.cos(angle), np.sin(angle)])
+        xy_m = _cast_beams(self._grid, self._xy_m[scan_id], way)
+        return np.column_stack([xy_m, np.zeros(_BEAMS)]).astype(np.float32), None
+
+
+def _cast_beams(grid: _Grid, from_m: FloatArray, way: FloatArray) -> FloatArray:
+    """Return the middles (n, 2), from there, of the first cells that beams (n, 2) meet occupied.
+
+    NaN without one. Where a beam enters a cell is nearer than what was measured in it.
+    """
+    step_m = grid.cell_m / 4  # a beam cuts no corner of a cell by more
+    along_m = np.arange(1, int(_REACH_M / step_m)) * step_m
+    ends_m = np.full((len(way), 2), np.nan)
+    is_going = np.ones(len(way), bool)
+    for part_m in np.array_split(along_m, max(1, len(along_m) // 64)):
+        rows = np.flatnonzero(is_going)
+        if len(rows) == 0:
+            break
+        places = from_m + way[rows, None] * part_m[:, None]
+        column, row = np.moveaxis(np.floor((places - grid.low_m) / grid.cell_m).astype(int), -1, 0)
+        is_inside = (row >= 0) & (row < grid.free.shape[0])
+        is_inside &= (column >= 0) & (column < grid.free.shape[1])
+        row, column = np.where(is_inside, row, 0), np.where(is_inside, column, 0)
+        is_free = is_inside & grid.free[row, column]
+        first = np.argmin(is_free, axis=1)
+        beams = np.arange(len(rows))
+        ends = ~is_free[beams, first]
+        hits = ends & is_inside[beams, first]
+        hits &= grid.occupied[row[beams, first], column[beams, first]]
+        cell = np.column_stack([column[beams, first], row[beams, first]])
+        middle_m = grid.low_m + (cell + 0.5) * grid.cell_m
+        ends_m[rows[hits]] = (middle_m - from_m)[hits]
+        is_going[rows[ends]] = False
+    return ends_m
+
+
+def _choose_places(grid: _Grid) -> IntArray:
+    """Return cells (n, 2), row and column: of each square of the floor the one most in the open."""
+    # what is beyond the map is not free
+    clear_m = bitmap.distances_to_outline(np.pad(grid.free, 1))[1:-1, 1:-1] * grid.cell_m
+    cells = np.argwhere(clear_m >= _CLEAR_M)
+    if len(cells) == 0:
+        return cells
+    square = (cells * grid.cell_m // _APART_M).astype(np.int64)
+    most = clear_m[tuple(cells.T)]
+    order = np.lexsort((cells[:, 1], cells[:, 0], -most, square[:, 1], square[:, 0]))
+    is_first = np.any(np.diff(square[order], axis=0, prepend=-1), axis=1)
+    return cells[order[is_first]]
+
+
+def _read_grid(path: Path) -> _Grid:
+    values = yaml_file.read_yaml(path)
+    try:
+        image_path = path.parent / values["image"]
+        cell_m = float(values["resolution"])
+        x_m, y_m, yaw_rad = map(float, values["origin"])
+        free_below = float(values.get("free_thresh", 0.25))
+        occupied_above = float(values.get("occupied_thresh", 0.65))
+        is_negated = bool(int(values.get("negate", 0)))
+    except (KeyError, TypeError, ValueError) as error:
+        raise StageError(
+            f"{path}: is no map of map_server ({error}): it has image, resolution, origin (x, y,"
+            " yaw), negate, occupied_thresh and free_thresh; mend it"
+        ) from None
+    if not _FINEST_M <= cell_m <= _COARSEST_M or yaw_rad != 0:
+        raise StageError(
+            f"{path}: resolution {cell_m:g} m, yaw {yaw_rad:g}: cells of {_FINEST_M} to"
+            f" {_COARSEST_M} m and a yaw of 0 are read; save the map so"
+        )
+    share = _read_image(image_path)
+    occupied = share if is_negated else 1.0 - share
+    free = occupied < free_below
+    return _Grid(free[::-1], (occupied > occupied_above)[::-1], cell_m, np.array([x_m, y_m]))
+
+
+def _read_image(path: Path) -> FloatArray:
+    """Return the grey values (rows, columns) of an image, 0 to 1."""
+    try:
+        with Image.open(path) as image:
+            if image.width * image.height > _MOST_CELLS:
+                raise StageError(
+                    f"{path}: {image.width} x {image.height} cells, more than {_MOST_CELLS}; cut"
+                    " the map"
+                )
+            return np.asarray(image.convert("L"), np.float32) / 255
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        reason = " ".join(str(error).split())[:100]
+        raise StageError(f"{path}: damaged ({reason}); save the map again") from error
