@@ -19,7 +19,6 @@ from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import PosedScans
-from scanplan.stage import log
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _BEAMS = 720  # half a degree: a cell of 5 cm at 6 m
@@ -73,11 +72,15 @@ class GridMapScans(PosedScans):
         track = frame_edges.FrameEdge("map", "sensor", xyz_m, level, stamps_ns)
         super().__init__(str(path), track, stamps_ns, STATIONS, **reading)
         self._xy_m = xy_m
-        log.log_warning(
-            f"{path}: a grid map, and no scans: the plan is what {len(xy_m)} places in its free"
-            f" floor would see, to half a cell of {self._grid.cell_m:g} m; people and furniture of"
-            " the day are walls"
-        )
+
+    def describe_damage(self) -> list[str]:
+        """Return what a plan of a map alone is worth, and what could not be read, in sentences."""
+        return [
+            f"a grid map alone, no scans: the plan is what {len(self._xy_m)} places in its free"
+            f" floor would see, to half a cell of {self._grid.cell_m:g} m; what furniture, people"
+            " and shut doors hid is as the map has it",
+            *super().describe_damage(),
+        ]
 
     @property
     def planar(self) -> bool:
