@@ -25,6 +25,7 @@ from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
+_HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
 
@@ -115,19 +116,20 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         ],
         [("Verdict", _state_verdict(plan), 3)],
     ]
-    height = (y1 - y0) / len(rows)
+    # the last row, on the frame's thick line, is the highest
+    levels = [*np.arange(len(rows)) * -_HEIGHT_MM + y1, y0]
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
     for number, row in enumerate(rows):
-        top = y1 - number * height
+        top, bottom = levels[number : number + 2]
         yield _rule(x0, top, x1, top)
         x = x0
         for head, value, columns in row:
             width = columns * Paper.COLUMN
             if x > x0:
-                yield _rule(x, top, x, top - height)
-            yield _word("note", head, x + Paper.GAP, top - height / 2, Letters.SMALL)
+                yield _rule(x, top, x, bottom)
+            yield _word("note", head, x + Paper.GAP, (top + bottom) / 2, Letters.SMALL)
             ends = (x + _HEAD_MM, x + width - Paper.GAP)
-            yield from _draw_value(head, clean_text(value), ends, top - height / 2)
+            yield from _draw_value(head, clean_text(value), ends, (top + bottom) / 2)
             x += width
 
 
