@@ -3,7 +3,13 @@
 `make faults` tries all of them, in space too.
 """
 
-from faults import drives, judging, lying_drives, remedies
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faults import drives, judging, lying_drives, making, remedies
+from scanplan.stage.witness_table import PLAN, SKETCH
 
 FEW = (
     "map jumps by 3 m, 1 m and 5 degrees",
@@ -14,9 +20,28 @@ FEW = (
 )
 
 
-def test_what_is_advised_mends_the_drive(tmp_path):
+@pytest.fixture(scope="module")
+def rooms(tmp_path_factory):
     laser = lying_drives.SENSORS["in the plane"]
-    rooms = drives.drive_through(tmp_path / "rooms", settings=laser)
+    return drives.drive_through(tmp_path_factory.mktemp("rooms"), settings=laser)
+
+
+def test_a_sketch_becomes_a_plan_where_its_rooms_are_looked_into(rooms, tmp_path):
+    """A scanner of 120 degrees has seen parts of three rooms after three tenths of its way."""
+    ahead = [np.abs(np.arctan2(cloud[:, 1], cloud[:, 0])) <= np.pi / 3 for cloud in rooms.clouds]
+    taken = [cloud[is_ahead] for cloud, is_ahead in zip(rooms.clouds, ahead, strict=True)]
+    narrow = replace(rooms, clouds=taken)
+    verdicts = []
+    for share in (0.3, 1.0):
+        place = tmp_path / f"{share}"
+        place.mkdir()
+        making.make_plan(place, [str(narrow.take(narrow.share <= share).write(place / "run"))])
+        verdicts.append(making.read_verdict(place))
+    assert [verdict.worth for verdict in verdicts] == [SKETCH, PLAN]
+    assert "look into Room" in verdicts[0].remedy
+
+
+def test_what_is_advised_mends_the_drive(rooms, tmp_path):
     tally = judging.Tally()
     remedies.try_remedies(tmp_path, {"rooms": rooms}, planar=True, tally=tally, names=FEW)
     assert tally.wrong == []
