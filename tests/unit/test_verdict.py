@@ -29,12 +29,14 @@ def test_closed_rooms_and_nothing_against_them_are_a_plan():
     assert not verdict.cause and not verdict.remedy
 
 
-def test_less_than_half_of_the_floor_in_closed_rooms_is_a_sketch():
+def test_less_than_half_of_the_rooms_or_of_their_floor_closed_is_a_sketch():
     half = judged(closed=(True, False), areas_m2=(9.0, 9.0))
     less = judged(closed=(True, False), areas_m2=(8.9, 9.0))
     assert half.worth == witness_table.PLAN and less.worth == witness_table.SKETCH
     assert less.gist.startswith("1 of 2 rooms is closed, 50%")
     assert "look into Room 1 " in less.remedy
+    few = judged(closed=(True, False, False), areas_m2=(90.0, 9.0, 9.0))
+    assert few.worth == witness_table.SKETCH
 
 
 def test_of_many_open_rooms_the_widest_are_named():
