@@ -17,9 +17,9 @@ UNTRIED = Misreading(
 )
 """Where no reading was tried."""
 NONE_MEETS = Misreading(
-    "no other unit, clock, mounting or order of the poses lets them meet, so the poses themselves"
-    " err by more than scans can mend",
-    "record a localiser that keeps to its map, or drive more slowly; of a drive that was put"
-    " together make each part a dataset of its own",
+    "no other unit, clock, mounting or order of the poses lets neighbours meet clearly better, so"
+    " the poses themselves err from place to place, or the mounting by a few degrees",
+    "record a localiser that keeps to its map, or drive more slowly; calibrate the mounting; of a"
+    " drive that was put together make each part a dataset of its own",
 )
 """Where all were, and scans meet in none."""
