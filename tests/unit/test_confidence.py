@@ -105,7 +105,7 @@ def test_a_doubt_is_of_size_where_evidence_as_usual_leaves_it():
     areas = [shapely.box(100, 0, 104, 4), shapely.box(104, 0, 105, 1)]
     parts = PARTS | {"rooms": floorplan_making.rooms(areas)}
     plan = floorplan.make_floorplan(parts, 0.0, 2.5)
-    found = confidence.rate_elements(plan, validation(), weighted("rooms", faced=9.0, broad=9.0))
+    found = confidence.rate_elements(plan, validation(), weighted("rooms", faced=20.0, broad=20.0))
     rooms = found["table"] == "rooms"
     assert found["verify"][rooms].tolist() == [True, True]
     assert found["needs_person"][rooms].tolist() == [False, True]

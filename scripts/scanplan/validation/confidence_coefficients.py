@@ -1,58 +1,62 @@
 """The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.
 
-Fitted on drawn_22, drawn_23, drawn_24, drawn_25, drawn_26, drawn_27, drawn_28, drawn_29, drawn_30,
-drawn_31, drawn_32, drawn_35, drawn_36, drawn_37, drawn_38, drawn_41, drawn_44; tested on demo_1,
-demo_2, ring_1, ring_2, duplex_1, duplex_2, duplex_3, fzk_1, fzk_2, fzk_3.
+Fitted on dwelling_101_vlp16_rover, dwelling_102_vlp16_unconverged,
+office_cellular_101_ouster64_trolley, office_cellular_102_vlp16_rover,
+hospital_101_vlp16_unconverged, hospital_102_uneven32_tilted, old_house_101_vlp16_hand,
+old_house_103_uneven32_tilted, museum_102_vlp16_hand, hall_101_vlp16_odometry, hall_103_vlp16_hand,
+office_glass_103_vlp16_rover; tested on attic_201_vlp16_hand, basement_202_uneven32_tilted,
+hotel_203_vlp16_rover, school_202_vlp16_rover, library_202_vlp16_hand, shop_201_vlp16_odometry,
+office_open_203_vlp16_odometry.
 """
 
 from typing import Any
 
 COEFFICIENTS: dict[str, Any] = {
-    "level": 0.908,
+    "level": 0.627,
     "walls": {
-        "intercept": 3.8289,
+        "intercept": 1.8199,
         "features": {
-            "agreement": {"mean": 4.9647, "weight": 0.4273},
-            "observed": {"mean": 0.949, "weight": 4.3745},
-            "undoubled": {"mean": 0.8946, "weight": 0.6441},
-            "joined": {"mean": 1.6732, "weight": 0.6832},
-            "bounding": {"mean": 0.9599, "weight": 0.8711},
-            "worst_span": {"mean": -0.4312, "weight": 0.4332},
-            "points": {"mean": 6.644, "weight": 0.1871},
-            "length": {"mean": 1.527, "weight": 0.4632},
+            "agreement": {"mean": 4.0185, "weight": 0.4479},
+            "observed": {"mean": 0.9153, "weight": 0.8072},
+            "undoubled": {"mean": 0.8988, "weight": 0.4635},
+            "joined": {"mean": 1.457, "weight": 0.235},
+            "bounding": {"mean": 0.8199, "weight": 0.8371},
+            "worst_span": {"mean": -0.1016, "weight": 0.2057},
+            "points": {"mean": 7.1249, "weight": 0.2288},
+            "length": {"mean": 0.7469, "weight": 0.0},
         },
     },
     "faces": {
-        "intercept": 5.5009,
+        "intercept": 2.1568,
         "features": {
-            "agreement": {"mean": 5.1411, "weight": 0.4508},
-            "worst_span": {"mean": 4.2539, "weight": 0.2949},
-            "points": {"mean": 5.8615, "weight": 0.2827},
-            "observed": {"mean": 0.8843, "weight": 0.0},
-            "length": {"mean": 0.3118, "weight": 0.4609},
-            "smooth": {"mean": -1.1945, "weight": 0.2312},
-            "undoubled": {"mean": 0.9333, "weight": 0.1893},
-            "joined": {"mean": 1.8362, "weight": 1.1314},
-            "bounding": {"mean": 0.9776, "weight": 0.6769},
+            "agreement": {"mean": 3.893, "weight": 0.2736},
+            "worst_span": {"mean": 3.3609, "weight": 0.2221},
+            "points": {"mean": 5.4427, "weight": 0.0423},
+            "observed": {"mean": 0.7663, "weight": 0.0},
+            "length": {"mean": -0.2531, "weight": 0.0},
+            "smooth": {"mean": -1.2988, "weight": 0.1338},
+            "undoubled": {"mean": 0.9394, "weight": 0.0483},
+            "joined": {"mean": 1.6391, "weight": 0.2205},
+            "bounding": {"mean": 0.886, "weight": 1.2978},
         },
     },
     "openings": {
-        "intercept": 2.7888,
+        "intercept": 0.3062,
         "features": {
-            "kind": {"mean": 2.9348, "weight": 3.5642},
-            "usual": {"mean": 0.8715, "weight": 4.7712},
-            "wall": {"mean": 4.7297, "weight": 0.2529},
-            "joined": {"mean": 1.9257, "weight": 1.1032},
-            "alone": {"mean": 0.9106, "weight": 2.3635},
-            "width": {"mean": -0.1539, "weight": 0.7022},
+            "kind": {"mean": 2.7186, "weight": 0.5001},
+            "usual": {"mean": 0.8431, "weight": 1.7104},
+            "wall": {"mean": 3.7682, "weight": 0.321},
+            "joined": {"mean": 1.8066, "weight": 0.752},
+            "alone": {"mean": 0.8275, "weight": 0.5545},
+            "width": {"mean": 0.0259, "weight": 0.0},
         },
     },
     "rooms": {
-        "intercept": 5.4429,
+        "intercept": 3.1495,
         "features": {
-            "walled": {"mean": 0.9182, "weight": 4.9828},
-            "faced": {"mean": 0.7977, "weight": 0.7423},
-            "broad": {"mean": 1.1909, "weight": 4.0942},
+            "walled": {"mean": 0.8591, "weight": 0.0},
+            "faced": {"mean": 0.7216, "weight": 7.3243},
+            "broad": {"mean": 1.1472, "weight": 0.1292},
         },
     },
 }
