@@ -12,6 +12,7 @@ from scanplan.plan.tolerances import CORNER_M
 from scanplan.types import FloatArray
 
 _WAYS = ("door", "shut", "glass")
+_LEAST_COSINE = np.cos(intersections.LEAST_RAD)  # of walls in one line
 
 
 def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
@@ -24,7 +25,8 @@ def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
         Of a door, which is all that may be beyond a wall's faces.
     """
     spans = intersections.stack_spans(walls)
-    return [_lengthen(number, walls, spans, most_m) for number in range(len(walls))]
+    ends_m = np.array([wall.ends for wall in walls]).reshape(-1, 2, 2)
+    return [_lengthen(number, walls, spans, ends_m, most_m) for number in range(len(walls))]
 
 
 def find_corridors(walls: Sequence[PlanWall]) -> list[FloatArray]:
@@ -68,14 +70,20 @@ def _find_crossed(
 
 
 def _lengthen(
-    number: int, walls: Sequence[PlanWall], spans: intersections.SpanArrays, most_m: float
+    number: int,
+    walls: Sequence[PlanWall],
+    spans: intersections.SpanArrays,
+    ends_m: FloatArray,
+    most_m: float,
 ) -> PlanWall:
     wall = walls[number]
     crossings = wall.find_crossings(spans)
     half_m = np.array([walls[row].half_m for row in crossings.which]) / crossings.sine
-    ahead = [other for other in walls[number + 1 :] if wall.goes_on_as(other)]
-    ends_m = np.array([wall.line.along_m(other.ends) for other in ahead]).reshape(-1)
-    near_m = np.concatenate([crossings.place_m - half_m, crossings.place_m + half_m, ends_m])
+    later = ends_m[number + 1 :]
+    goes_on = np.abs(spans.normal[number + 1 :] @ wall.line.normal) >= _LEAST_COSINE
+    goes_on &= np.abs(wall.line.offset_m(later)).min(axis=1) <= CORNER_M
+    ahead_m = wall.line.along_m(later[goes_on]).reshape(-1)
+    near_m = np.concatenate([crossings.place_m - half_m, crossings.place_m + half_m, ahead_m])
 
     def go_on(end_m: float, sign: int) -> float:
         if (np.abs(crossings.place_m - end_m) <= half_m + CORNER_M).any():
