@@ -197,6 +197,12 @@ def test_columns_have_a_layer_of_their_own():
     assert len(column) == 4 and column.closed
 
 
+def test_open_leaves_are_on_the_layer_of_doors():
+    document = reopened(plan(furniture=floorplan_making.furniture(kind="leaf")))
+    doors = document.modelspace().query('LWPOLYLINE[layer=="A-DOOR"]')
+    assert [len(door) for door in doors if door.closed] == [4]
+
+
 def test_doubt_has_layers_of_its_own():
     openings = floorplan_making.openings() | {
         "verify": np.array([True, False, True]),

@@ -17,6 +17,7 @@ from scanplan.exports.sheet.marks import Symbol, Word, flatten
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
+from scanplan.store import schemas
 from scanplan.store.doubts import Doubts, Finding
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
@@ -454,6 +455,13 @@ def test_a_column_is_cut_like_a_wall_on_a_layer_of_its_own():
     assert STYLES["column"].layer == "A-COLS" and column.element == "column-0"
     assert STYLES["column"].fill == STYLES["wall"].fill
     assert "column" in legend_kinds(sheet)
+
+
+@pytest.mark.parametrize("kind", [schemas.PIECE, schemas.COLUMN, schemas.LEAF])
+def test_whatever_stands_in_a_room_is_drawn_and_in_the_legend(kind):
+    sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture(kind=kind)))
+    assert kind in {mark.kind for mark in composition.paper_marks(sheet)}
+    assert kind in legend_kinds(sheet)
 
 
 def test_the_title_block_states_the_survey():

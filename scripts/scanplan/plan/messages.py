@@ -13,7 +13,7 @@ from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage.witnesses import Measured, rank_findings, state_witness
 from scanplan.store.doubts import Finding
-from scanplan.store.schemas import COLUMN
+from scanplan.store.schemas import COLUMN, LEAF
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray
 
 
@@ -105,7 +105,9 @@ def summarise_plan(plan: Plan) -> str:
     n_inferred = int((faces["state"] == "inferred").sum())
     n_closed = int(rooms["closed"].sum())
     n_pieces = len(plan.furniture["furniture"])
-    n_columns = int(np.count_nonzero(plan.furniture["kind"] == COLUMN))
+    n_columns, n_leaves = (
+        int(np.count_nonzero(plan.furniture["kind"] == kind)) for kind in (COLUMN, LEAF)
+    )
     n_unseen = int((plan.openings["type"] == UNSEEN).sum())
     parts = [
         f"{len(walls['wall'])} walls ({n_paired} with thickness, {n_doubtful} to verify),"
@@ -114,7 +116,8 @@ def summarise_plan(plan: Plan) -> str:
         say_count(len(plan.openings["opening"]) - n_unseen, "opening"),
         f"{say_count(len(rooms['room']), 'room')}, {n_closed} closed,"
         f" {rooms['area_m2'].sum():,.1f} m2",
-        f"{n_pieces - n_columns} pieces of furniture, {n_columns} columns",
+        f"{n_pieces - n_columns - n_leaves} pieces of furniture, {n_columns} columns,"
+        f" {n_leaves} open leaves",
         f"{plan.n_dropped} of {plan.n_lines} lines of faces dropped",
         summarise_range_bias(plan.range_errors_m),
     ]

@@ -22,6 +22,8 @@ from scanplan.plan.tolerances import END_M
 from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts
 
+_LOOSE = ("furniture", "leaf")  # words may lie over these
+
 
 @dataclass(frozen=True)
 class Sheet:
@@ -168,7 +170,7 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     loose = [
         path
         for mark in marks
-        if mark.kind not in {*solid, "room", "hidden", "axis", "verify", "corrected", "furniture"}
+        if mark.kind not in {*solid, *_LOOSE, "room", "hidden", "axis", "verify", "corrected"}
         for path in mark.paths
     ]
     loose += [path for symbol in symbols for path in symbol_paths(symbol)]
@@ -176,7 +178,7 @@ def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSp
     furniture = [
         shapely.LineString(page.to_paper(path[:, :2]))
         for mark in marks
-        if mark.kind == "furniture"
+        if mark.kind in _LOOSE
         for path in mark.paths
     ]
     return LabelSpace(page.drawing_mm, walls, lines, furniture)

@@ -133,6 +133,7 @@ STYLES = {
     "low": Style("A-WALL-PRHT", "wall or furniture below the ceiling", FAINT, "#ffffff"),
     "wall": Style("A-WALL", "wall, cut", fill="#7f7f7f"),
     "column": Style("A-COLS", "column, cut", fill="#7f7f7f"),
+    "leaf": Style("A-DOOR", "open leaf of a door, as it stood", ink=FAINT),
     "surface": Style("A-WALL-SURF", "surface, seen from one side"),
     "surface-inferred": Style("A-WALL-INFR", "inferred surface", FAINT, dashes_mm=_DASHED),
     "passage": Style("A-WALL-OPNG", "passage", FAINT, dashes_mm=(1.2, 0.8)),
