@@ -44,7 +44,7 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
     str
         Coordinates in metres rounded to 0.1 mm. Features are of `kind` face and wall (LineString; a
         wall's is its centreline, or its only face), opening (LineString from one side of it to the
-        other), room, furniture and column (Polygon). Their properties are the columns of the
+        other), room, furniture, column and leaf (Polygon). Their properties are the columns of the
         tables, null where not known.
     """
     collection = {
