@@ -292,9 +292,13 @@ def test_a_killed_run_resumes_with_the_same_command(project, sent, targets):
 
 def test_two_runs_at_once_do_not_mix(project):
     before = project.digests()
-    # at work for longer than the second takes to begin
     first = registering(project)
-    second = project.run("--forcerun", "build_hulls")
+    # however long the second takes to begin, the first is at work by then
+    os.killpg(first.pid, signal.SIGSTOP)
+    try:
+        second = project.run("--forcerun", "build_hulls")
+    finally:
+        os.killpg(first.pid, signal.SIGCONT)
     assert first.wait(timeout=120) == 0
     assert second.returncode != 0 and "another run is at work" in second.stdout + second.stderr
     assert project.digests() == before
