@@ -104,12 +104,7 @@ WALLS: dict[str, Rule] = {
         "plan.walls:_trim",
         "plan.walls:_split",
     ),
-    "corridors": make_rule(
-        "plan.walls:_cut_at_corridors",
-        give_alone(0),
-        "plan.walls:_cut_at_corridors",
-        "plan.walls:_runs_through",
-    ),
+    "corridors": make_rule("plan.walls:_cut_at_corridors", give_alone(0)),
     "inferred faces": make_rule(
         "plan.wall_faces:_inferred_extents",
         find_none,

@@ -13,6 +13,7 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays.face_observation import FaceObservation
+from scanplan.types import BoolArray, FloatArray
 
 _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 
@@ -97,9 +98,18 @@ class PlanWall(Span):
 
     def goes_on_as(self, other: "PlanWall") -> bool:
         """Return whether another wall is much the same way, in the line of this one."""
-        turn = abs(float(self.line.direction @ other.line.direction))
-        nearest_m = float(np.abs(self.line.offset_m(other.ends)).min())
-        return turn >= math.cos(intersections.LEAST_RAD) and nearest_m <= CORNER_M
+        return bool(self.are_in_line(other.line.normal[None], other.ends[None])[0])
+
+    def are_in_line(self, normal: FloatArray, ends_m: FloatArray) -> BoolArray:
+        """Return which walls (n,) are in its line, by their normals (n, 2) and ends (n, 2, 2)."""
+        turn = np.abs(normal @ self.line.normal)
+        nearest_m = np.abs(self.line.offset_m(ends_m)).min(axis=1)
+        return (turn >= math.cos(intersections.LEAST_RAD)) & (nearest_m <= CORNER_M)
+
+    def runs_through(self, other: "PlanWall", place_m: float) -> bool:
+        """Return whether it goes on on both sides of another, which it crosses at a place there."""
+        at_m = float(self.line.along_m(other.line.at(place_m)))
+        return min(at_m - self.low_m, self.high_m - at_m) > other.half_m + CORNER_M
 
     def find_crossings(self, spans: intersections.SpanArrays) -> intersections.Crossings:
         """Find the spans that cross it, or end as near before it as walls that meet it do."""

@@ -215,7 +215,7 @@ def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[Pla
 
     Such is an opening between two walls that both run on there, unless wall is seen above it.
     """
-    through_m = np.array([m for other, m in crossings if _runs_through(other, wall, m)])
+    through_m = np.array([m for other, m in crossings if other.runs_through(wall, m)])
     ends_m = [wall.low_m, wall.high_m]
     crosses = False
     for opening in wall.openings:
@@ -228,12 +228,6 @@ def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[Pla
         return [wall]
     parts = [wall.between(*span_m) for span_m in np.sort(ends_m).reshape(-1, 2).tolist()]
     return [part for part in parts if part.members]
-
-
-def _runs_through(other: PlanWall, wall: PlanWall, place_m: float) -> bool:
-    """Return whether another wall goes on on both sides of one that it crosses at a place."""
-    at_m = float(other.line.along_m(wall.line.at(place_m)))
-    return min(at_m - other.low_m, other.high_m - at_m) > wall.half_m + CORNER_M
 
 
 def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:

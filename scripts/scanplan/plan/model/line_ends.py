@@ -12,7 +12,6 @@ from scanplan.plan.tolerances import CORNER_M
 from scanplan.types import FloatArray
 
 _WAYS = ("door", "shut", "glass")
-_LEAST_COSINE = np.cos(intersections.LEAST_RAD)  # of walls in one line
 
 
 def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
@@ -61,10 +60,8 @@ def _find_crossed(
     found = wall.find_crossings(spans)
     crossed_m = []
     for row, place_m, sine in zip(found.which, found.place_m, found.sine, strict=True):
-        other = walls[row]
-        at_m = float(other.line.along_m(wall.line.at(place_m)))
-        if min(at_m - other.low_m, other.high_m - at_m) > wall.half_m + CORNER_M:
-            reach_m = other.half_m / sine + CORNER_M
+        if walls[row].runs_through(wall, float(place_m)):
+            reach_m = walls[row].half_m / sine + CORNER_M
             crossed_m.append((place_m - reach_m, place_m + reach_m))
     return np.array(crossed_m).reshape(-1, 2)
 
@@ -79,10 +76,9 @@ def _lengthen(
     wall = walls[number]
     crossings = wall.find_crossings(spans)
     half_m = np.array([walls[row].half_m for row in crossings.which]) / crossings.sine
-    later = ends_m[number + 1 :]
-    goes_on = np.abs(spans.normal[number + 1 :] @ wall.line.normal) >= _LEAST_COSINE
-    goes_on &= np.abs(wall.line.offset_m(later)).min(axis=1) <= CORNER_M
-    ahead_m = wall.line.along_m(later[goes_on]).reshape(-1)
+    later = slice(number + 1, None)
+    goes_on = wall.are_in_line(spans.normal[later], ends_m[later])
+    ahead_m = wall.line.along_m(ends_m[later][goes_on]).reshape(-1)
     near_m = np.concatenate([crossings.place_m - half_m, crossings.place_m + half_m, ahead_m])
 
     def go_on(end_m: float, sign: int) -> float:
