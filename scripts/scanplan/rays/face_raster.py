@@ -1,8 +1,7 @@
 """A surface in columns and rows of cells: where rays are occupied, free and occluded there.
 
 Columns run along the surface's line, rows up from the floor. Which of them are wall, open, crossed
-or overlooked, and how high a surface is seen, are questions to these rays: asked here, for one scan
-or many.
+or overlooked are questions to these rays: asked here, for one scan or many.
 """
 
 from dataclasses import dataclass
@@ -64,11 +63,6 @@ class FaceRaster:
         """Where rays went through."""
         return self._cells_of(self.free_places)
 
-    @cached_property
-    def top_m(self) -> FloatArray:
-        """Height of the highest return of each column, (c,); minus infinity without any."""
-        return highest_of_each(self.occupied.column, self.occupied_places[1], self.n_columns)
-
     @property
     def middle_m(self) -> FloatArray:
         """Where the middle of each column is along the line, (c,)."""
@@ -122,20 +116,9 @@ class FaceRaster:
         return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
 
     def is_overlooked(self, below_m: float) -> BoolArray:
-        """Return in which columns (c,) rays go through above whatever rays end at."""
-        top_row = np.full(self.n_columns, -1)
-        np.maximum.at(top_row, *self.occupied)
-        is_over = self.planar | (self.free.row > top_row[self.free.column])
-        n_over = np.bincount(self.free.column[is_over], minlength=self.n_columns)
+        """Return in which columns (c,) of a plane not just strays pass over what rays end at."""
         few = np.maximum(FEW, STRAY_SHARE * self.count_occupied(below_m))
-        return n_over >= few
-
-    def seen_top_m(self, columns: slice = slice(None)) -> float:
-        """Return up to which height a surface is seen over a good stretch of its length.
-
-        See `seen_tops_m`.
-        """
-        return float(seen_tops_m(self.top_m[None, columns], CELL_M)[0])
+        return self.count_free(below_m) >= few
 
     @cached_property
     def _n_occupied(self) -> dict[int, IntArray]:
@@ -175,35 +158,6 @@ def find_stretches(is_found: BoolArray, first_m: float) -> FloatArray:
     columns = np.flatnonzero(steps).reshape(-1, 2)
     is_long = np.diff(columns, axis=1)[:, 0] >= round(STRETCH_M / CELL_M)
     return first_m + CELL_M * columns[is_long]
-
-
-def highest_of_each(cell: IntArray, height_m: FloatArray, n_cells: int) -> FloatArray:
-    """Return the greatest of heights (n,) in each of some cells; minus infinity without any."""
-    top_m = np.full(n_cells, -np.inf)
-    np.maximum.at(top_m, cell, height_m)
-    return top_m
-
-
-def seen_tops_m(top_m: FloatArray, column_m: float) -> FloatArray:
-    """Return up to which heights (k,) surfaces are seen over a good stretch of their length.
-
-    Of a surface so short that no stretch is as long, in any column; minus infinity where nothing is
-    seen.
-
-    Parameters
-    ----------
-    top_m : (k, c) float64
-        Height of the highest return of each column; minus infinity without any.
-    column_m : float
-        Width of a column.
-    """
-    n_seen = np.isfinite(top_m).sum(axis=1)
-    if not n_seen.any():
-        return np.full(len(top_m), -np.inf)
-    # the return of something else at an end may be all that a column has
-    enough = max(int(np.ceil(STRETCH_M / column_m)) - 1, 1)
-    last = np.clip(n_seen - 1, 0, enough)
-    return -np.sort(-top_m, axis=1)[np.arange(len(top_m)), last]
 
 
 def _row_at(height_m: float) -> int:

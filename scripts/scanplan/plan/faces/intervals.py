@@ -52,12 +52,6 @@ class FaceInterval(Span):
         return self.points.stop - self.points.start
 
     @cached_property
-    def top_m(self) -> float:
-        """Height above the floor up to which it is seen over a good part of its length."""
-        raster = self.seen.raster
-        return raster.seen_top_m(raster.between(self.low_m, self.high_m))
-
-    @cached_property
     def scans(self) -> IntArray:
         """The scans (k,) that show it, increasing."""
         return np.unique(self.seen.occupied_scan[self.points])
@@ -191,12 +185,10 @@ def find_face_intervals(
     raster = seen.raster
     is_foreign = _is_within(raster, [*foreign_m, *seen.lost_m])
     is_solid = raster.is_solid(door_height_m) & ~is_foreign
-    is_overlooked = raster.is_overlooked(door_height_m)
     is_opened = raster.is_opened(door_height_m)
     intervals = []
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
-        overlooked = is_overlooked[first : last + 1]
-        if not seen.planar or overlooked.sum() < (~overlooked).sum():
+        if not seen.planar or raster.is_overlooked(door_height_m)[first : last + 1].mean() < 0.5:
             low_m = raster.first_m + CELL_M * first
             high_m = raster.first_m + CELL_M * (last + 1)
             intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
