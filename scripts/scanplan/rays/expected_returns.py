@@ -112,11 +112,11 @@ def count_sent_rays(
     rays: RaySet,
     face: FaceRays,
     low_m: float,
-    count: int | IntArray,
+    count: int,
     column_m: float,
-    heights_m: tuple[float, float] | FloatArray,
+    heights_m: tuple[float, float],
 ) -> SentRays:
-    """Return the rays that were sent to the columns of surfaces.
+    """Return the rays that were sent to the columns of a surface.
 
     Parameters
     ----------
@@ -124,35 +124,32 @@ def count_sent_rays(
     face : face_rays.FaceRays
         Of these, with what is occluded within `NEAR_M`.
     low_m : float
-        Where along its line the first column of a view begins.
-    count : int or (v,) int
-        Number of columns, if not of all views the same.
+        Where along its line the first column begins.
+    count : int
+        Number of columns.
     column_m : float
-    heights_m : (2,) or (v, 2) float
+    heights_m : (float, float)
         From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
 
     Returns
     -------
     SentRays
-        Of the views from the side of the line's normal and from near enough; nothing in columns
-        beyond a view's own.
+        Of the views from the side of the line's normal and from near enough.
     """
     views = face.views
-    counts = np.broadcast_to(count, len(views.scan))
-    is_looking, expected = _expect_returns(rays, face, low_m, counts, column_m, heights_m)
-    high_m = low_m + column_m * counts
-    bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
+    is_looking, expected = _expect_returns(rays, face, low_m, count, column_m, heights_m)
+    high_m = low_m + column_m * count
+    bottom_m, top_m = heights_m
     grazing_m = _GRAZING * views.side_m
-    n_columns = expected.shape[1]
     view, along_m, height_m = face.view, face.along_m, face.height_m
-    is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m.take(view))
-    is_inside &= (height_m >= bottom_m.take(view)) & (height_m < top_m.take(view))
+    is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
+    is_inside &= (height_m >= bottom_m) & (height_m < top_m)
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
     (rows,) = np.nonzero(is_inside)
     behind_m = face.behind_m.take(rows)
     column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
     row = np.cumsum(is_looking) - 1
-    cell = row.take(view.take(rows)) * n_columns + np.minimum(column, n_columns - 1)
+    cell = row.take(view.take(rows)) * count + np.minimum(column, count - 1)
     is_returned = behind_m >= -ON_M
     kinds = (~is_returned, is_returned, is_returned & (behind_m <= DEEP_M))
     occluded, returned, in_wall = (
@@ -178,28 +175,26 @@ def expect_returns(
 
     As `count_sent_rays`, of the same views in the same order.
     """
-    counts = np.broadcast_to(count, len(face.views.scan))
-    return _expect_returns(rays, face, low_m, counts, column_m, heights_m)[1]
+    return _expect_returns(rays, face, low_m, count, column_m, heights_m)[1]
 
 
 def _expect_returns(
     rays: RaySet,
     face: FaceRays,
     low_m: float,
-    counts: IntArray,
+    count: int,
     column_m: float,
-    heights_m: tuple[float, float] | FloatArray,
+    heights_m: tuple[float, float],
 ) -> tuple[BoolArray, FloatArray]:
-    """Return which views look at their columns, and the returns (v, n) to be expected of these."""
+    """Return which views look at the columns, and the returns (v, n) to be expected of these."""
     views = face.views
-    high_m = low_m + column_m * counts
+    high_m = low_m + column_m * count
     beyond_m = np.maximum(low_m - views.sensor_along_m, views.sensor_along_m - high_m)
     grazing_m = _GRAZING * views.side_m  # along the line, from where the sensor stands
     is_near = np.hypot(views.side_m, np.maximum(beyond_m, 0)) <= NEAR_M
     is_looking = is_near & (beyond_m <= grazing_m) & (views.side_m >= views.least_side_m)
     (looking,) = np.nonzero(is_looking)
-    number = np.arange(counts.max(initial=0))
-    away_m = low_m + column_m * (number + 0.5) - views.sensor_along_m[looking, None]
+    away_m = low_m + column_m * (np.arange(count) + 0.5) - views.sensor_along_m[looking, None]
     distance_m = np.hypot(away_m, views.side_m[looking, None])
     if rays.planar:
         # from the shortest way to the plane
@@ -208,12 +203,9 @@ def _expect_returns(
         azimuth_rad = np.arctan2(-normal_y, -normal_x) + turn_rad
         per_deg = rays.beams.per_deg_at(views.scan[looking], azimuth_rad, distance_m)
     else:
-        bottom_m, top_m = np.broadcast_to(heights_m, (len(counts), 2)).T
-        heights = bottom_m[looking, None], top_m[looking, None]
-        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights)
+        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights_m)
     expected = per_deg * np.rad2deg(column_m * views.side_m[looking, None] / distance_m**2)
     expected *= np.abs(away_m) < grazing_m[looking, None]
-    expected *= number < counts[looking, None]
     return is_looking, expected
 
 
@@ -221,7 +213,7 @@ def _returns_per_deg(
     rays: RaySet,
     scans: IntArray,
     distance_m: FloatArray,
-    heights_m: tuple[FloatArray, FloatArray],
+    heights_m: tuple[float, float],
 ) -> FloatArray:
     """Return how many returns scans (s,) usually have to a degree of azimuth, (s, n).
 
@@ -229,7 +221,7 @@ def _returns_per_deg(
     ----------
     distance_m : (s, n) float64
         How far away, level.
-    heights_m : (s, 1) and (s, 1) float64
+    heights_m : (float, float)
         From where to where.
     """
     low, high = (
