@@ -7,8 +7,7 @@ import shapely
 from helpers import furnished_house as house
 from helpers.house_making import PLAN
 from scanplan.plan import planning
-from scanplan.plan.model import things
-from scanplan.plan.model.surfaces import _choose_kinds, label_surfaces
+from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.store import schemas
 
 SETTINGS = planning.make_plan_settings(**PLAN)
@@ -78,12 +77,6 @@ class TestWholePlan:
         long = lines[shapely.length(lines) > 0.3]
         assert len(long) == 5
         assert shapely.length(long).sum() == pytest.approx(8 + 8 + 4 + 4 + 4, abs=0.3)
-
-
-def test_a_building_has_a_wall_at_least():
-    p = np.array([(0.3, 0.1, 0.6, 0.0), (0.4, 0.0, 0.6, 0.0), (0.2, 0.1, 0.7, 0.0)])
-    assert _choose_kinds(p) == [things.FURNITURE, things.WALL, things.FURNITURE]
-    assert _choose_kinds(p[:0]) == []
 
 
 def test_of_no_walls_there_are_no_surfaces(looked):

@@ -149,3 +149,9 @@ ANY = st.floats(0) | st.just(NAN)
 def test_probabilities_of_anything_sum_to_one(found):
     share = weigh(found)
     assert share.shape == (4,) and np.isfinite(share).all() and share.sum() == pytest.approx(1)
+
+
+def test_a_building_has_a_wall_at_least():
+    p = np.array([(0.3, 0.1, 0.6, 0.0), (0.4, 0.0, 0.6, 0.0), (0.2, 0.1, 0.7, 0.0)])
+    assert things.choose_kinds(p) == [FURNITURE, WALL, FURNITURE]
+    assert things.choose_kinds(p[:0]) == []

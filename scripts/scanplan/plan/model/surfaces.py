@@ -58,7 +58,7 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = _choose_kinds(things.weigh_things(found))
+    kinds = things.choose_kinds(things.weigh_things(found))
     kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
     kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
     return LabelledSurfaces(
@@ -67,17 +67,6 @@ def label_surfaces(
         tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
         leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
     )
-
-
-def _choose_kinds(p: FloatArray) -> list[int]:
-    """Return the likeliest kinds (n,) given their probabilities (n, 4), if one at least is a wall.
-
-    A building has walls.
-    """
-    kinds = p.argmax(axis=1)
-    if len(kinds) and not (kinds == things.WALL).any():
-        kinds[p[:, things.WALL].argmax()] = things.WALL
-    return kinds.tolist()
 
 
 def _label_among(

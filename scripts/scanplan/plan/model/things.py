@@ -188,6 +188,17 @@ def weigh_things(found: Sequence[Features]) -> FloatArray:
     return np.exp(weigh_kinds(likely, shares, TEMPER))
 
 
+def choose_kinds(p: FloatArray) -> list[int]:
+    """Return the likeliest kinds (n,) given their probabilities (n, 4), if one at least is a wall.
+
+    A building has walls.
+    """
+    kinds = p.argmax(axis=1)
+    if len(kinds) and not (kinds == WALL).any():
+        kinds[p[:, WALL].argmax()] = WALL
+    return kinds.tolist()
+
+
 def weigh_features(values: FloatArray, shares: Iterable[ArrayLike]) -> FloatArray:
     """Return how likely each kind makes what is known of surfaces, log: (n, 4).
 
