@@ -6,7 +6,7 @@ from scipy.spatial import KDTree
 from scanplan.geometry import se3
 from scanplan.types import FloatArray, IntArray
 
-_PAIRS = 12  # enough for a median; a pair takes a few milliseconds a reading
+_PAIRS = 12  # enough for a mean; a pair takes a few milliseconds a reading
 LEAST_PAIRS = 3
 """Of fewer a jump of the map between two scans is most."""
 _POINTS = 600  # of a scan: shares of fewer scatter

@@ -30,10 +30,16 @@ class Measured:
         return self.value > WITNESSES[self.name].limit
 
     @property
+    def written(self) -> tuple[str, str]:
+        """The value and the limit, with their unit."""
+        known = WITNESSES[self.name]
+        return known.unit.format(self.value), known.unit.format(known.limit)
+
+    @property
     def finding(self) -> Finding:
         """What is wrong, why, and the remedy."""
         known = WITNESSES[self.name]
-        value, limit = (known.unit.format(number) for number in (self.value, known.limit))
+        value, limit = self.written
         said, cause, remedy = (
             words.format(value=value, limit=limit, **self.more)
             for words in (known.means, known.cause, known.remedy)
@@ -62,8 +68,7 @@ def tell(stage: str, measured: Sequence[Measured]) -> list[Finding]:
     """Log all that was measured, and as warnings what is beyond its limit; return the latter."""
     words = []
     for each in measured:
-        known = WITNESSES[each.name]
-        value, limit = (known.unit.format(number) for number in (each.value, known.limit))
+        value, limit = each.written
         words.append(f"{each.name} {value} (at most {limit})")
     if words:
         log.log_line(f"{stage}: witnesses: {', '.join(words)}")
