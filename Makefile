@@ -85,7 +85,7 @@ bench: environment ## the stages against the algorithms of the thesis written li
 figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, --places says where, --types counts errors
 	@$(BIN)/python tests/house_figures.py $(ARGS)
 
-pictures: environment ## the pictures of README.md from results/demo, by a headless Chromium
+pictures: environment ## the pictures of README.md from results/demo; ARGS='results/X X' the tour's
 	@$(BIN)/python tests/pictures.py $(ARGS)
 
 settings: environment ## write the lists in config/ and the manual's tables from the schema

@@ -46,8 +46,9 @@ def test_the_manual_is_in_step_with_the_schema(project_root):
     assert settings_files.fill_manual(manual, SCHEMA) == manual, f"config/settings.md {REMEDY}"
 
 
-def test_the_manual_has_a_table_of_every_section(project_root):
-    sections = [key for key, node in SCHEMA["properties"].items() if is_section(node)]
+def test_the_manual_has_a_table_of_every_section_that_a_plan_depends_on(project_root):
+    found = [key for key, node in SCHEMA["properties"].items() if is_section(node)]
+    sections = [key for key in found if key not in settings_files.LABORATORY]
     tuned = [f"advanced.{key}" for key in SCHEMA["properties"]["advanced"]["properties"]]
     sections.remove("advanced")
     manual = (project_root / "config/settings.md").read_text()
@@ -88,6 +89,13 @@ def test_a_key_is_listed_with_its_meaning_unit_and_range():
         "  # a choice [x, y]",
         "  d: x",
     ]
+
+
+def test_a_list_has_a_keys_first_sentence_and_that_of_the_laboratory_all():
+    node = {"default": 1, "type": "integer", "description": "a number. Or more"}
+    assert settings_files._format_node("a", node, "") == ["# a number", "a: 1"]
+    whole = settings_files._format_node("a", node, "", is_whole=True)
+    assert whole == ["# a number. Or more", "a: 1"]
 
 
 def test_a_table_is_written_between_its_marks_and_nothing_else_changes():

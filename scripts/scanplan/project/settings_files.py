@@ -14,7 +14,9 @@ _SCHEMA = "workflow/schemas/config.schema.yaml"
 _MANUAL = "config/settings.md"
 _WIDTH = tomllib.loads((_ROOT / "pyproject.toml").read_text())["tool"]["ruff"]["line-length"]
 """Columns, as of the code."""
-_LABORATORY = ("simulate", "evaluation", "thesis")
+LABORATORY = ("simulate", "evaluation", "thesis")
+"""Sections that no plan of a recording depends on: simulate.yaml alone has them, with all that is
+said of a key; of others a list has the first sentence, and the manual all."""
 _HEADS = {
     "config.yaml": """\
 What a user may want to set, each key with its meaning [unit, range]; settings.md beside has more.
@@ -22,7 +24,7 @@ Values here hold for all datasets; those of one belong into a file dataset.yaml 
 of a run into a file for CONFIG= (--configfile). advanced.yaml and simulate.yaml list all others.
 """,
     "advanced.yaml": """\
-Tuned keys that few surveys want otherwise, each with its meaning [unit, range].
+Tuned keys that few surveys want otherwise, each with its meaning [unit, range]; see settings.md.
 This file is not read: copy what you change, with the sections around it, into config.yaml, a
 dataset.yaml or a file for CONFIG=.
 """,
@@ -43,7 +45,7 @@ def format_settings_files(schema: Schema) -> dict[str, str]:
 
 
 def _sections_of(schema: Schema, name: str) -> Schema:
-    elsewhere = {"advanced.yaml": (ADVANCED,), "simulate.yaml": _LABORATORY}
+    elsewhere = {"advanced.yaml": (ADVANCED,), "simulate.yaml": LABORATORY}
     properties: Schema = schema["properties"]
     if name in elsewhere:
         return {key: properties[key] for key in elsewhere[name]}
@@ -54,13 +56,14 @@ def _sections_of(schema: Schema, name: str) -> Schema:
 def _format_file(head: str, sections: Schema) -> str:
     lines = [f"# {line}" for line in [*head.splitlines(), _WRITTEN]]
     for key, node in sections.items():
-        lines += ["", *_format_node(key, node, "")]
+        lines += ["", *_format_node(key, node, "", is_whole=key in LABORATORY)]
     return "\n".join(lines) + "\n"
 
 
-def _format_node(key: str, node: Schema, indent: str) -> list[str]:
+def _format_node(key: str, node: Schema, indent: str, *, is_whole: bool = False) -> list[str]:
     limits = "" if is_section(node) else _format_limits(node)
-    meaning = _first_sentence(node["description"]) + (f" [{limits}]" if limits else "")
+    told = node["description"] if is_whole else _first_sentence(node["description"])
+    meaning = told + (f" [{limits}]" if limits else "")
     comment = textwrap.wrap(
         meaning, _WIDTH, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# "
     )
@@ -68,7 +71,7 @@ def _format_node(key: str, node: Schema, indent: str) -> list[str]:
         return [*comment, f"{indent}{key}: {_format_value(node['default'])}"]
     lines = [*comment, f"{indent}{key}:"]
     for child, below in node["properties"].items():
-        lines += _format_node(child, below, f"{indent}  ")
+        lines += _format_node(child, below, f"{indent}  ", is_whole=is_whole)
     return lines
 
 

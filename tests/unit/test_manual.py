@@ -1,0 +1,63 @@
+"""The manual's pages: what they link to is there."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("config/*.md"), *ROOT.glob("docs/*.md")])
+SCHEMA = ROOT / "workflow/schemas/config.schema.yaml"
+_LINK = re.compile(r"\]\(([^)\s]+)\)")
+_CODE = re.compile(r"`[^`\n]*`|^ {4}[^\n]*$|^```.*?^```", re.M | re.S)
+
+
+def slug(heading: str) -> str:
+    """Return the anchor that GitHub gives a heading."""
+    letters = re.sub(r"[^\w\- ]", "", heading.strip().lower())
+    return letters.replace(" ", "-")
+
+
+def anchors(page: Path) -> set[str]:
+    return {slug(found) for found in re.findall(r"(?m)^#+ (.+)$", page.read_text("utf-8"))}
+
+
+def find_dead(text: str, folder: Path) -> list[str]:
+    """Return links of a page that lead to no file, or to no heading of one."""
+    dead = []
+    for link in _LINK.findall(_CODE.sub("", text)):
+        name, _, anchor = link.partition("#")
+        target = folder / name if name else None
+        if link.startswith(("http:", "https:", "mailto:")) or target is None:
+            continue
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            dead.append(link)
+    return dead
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_every_link_of_a_page_leads_somewhere(page):
+    assert find_dead(page.read_text("utf-8"), page.parent) == []
+
+
+def test_every_link_of_a_setting_leads_somewhere():
+    assert find_dead(SCHEMA.read_text("utf-8"), ROOT / "config") == []
+
+
+def test_a_link_to_no_file_or_heading_is_found(tmp_path):
+    (tmp_path / "a.md").write_text("# One `two`: three\n")
+    text = "[a](a.md) [b](b.md) [c](a.md#one-two-three) [d](a.md#four) `[e](e.md)`"
+    assert find_dead(text, tmp_path) == ["b.md", "a.md#four"]
+
+
+def test_every_page_of_the_manual_is_reached_from_its_first():
+    reached, ahead = set(), [ROOT / "README.md"]
+    while ahead:
+        page = ahead.pop()
+        if page in reached or page.suffix != ".md":
+            continue
+        reached.add(page)
+        links = _LINK.findall(_CODE.sub("", page.read_text("utf-8")))
+        names = (link.partition("#")[0] for link in links if "://" not in link)
+        ahead += [(page.parent / name).resolve() for name in names if name]
+    assert [page.name for page in PAGES if page not in reached] == []
