@@ -88,8 +88,9 @@ figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, 
 pictures: environment ## the pictures of README.md from results/demo; ARGS='results/X X' the tour's
 	@$(BIN)/python tests/pictures.py $(ARGS)
 
-settings: environment ## write the lists in config/ and the manual's tables from the schema
+settings: environment ## write the lists in config/ and the manual's tables from the schemas
 	@PYTHONPATH=scripts $(BIN)/python -m scanplan.project.settings_files
+	@PYTHONPATH=scripts $(BIN)/python -m scanplan.store.column_lists
 
 environment: $(VENV)/.ready ## set up .venv from environment.lock (run, test and the others do it)
 

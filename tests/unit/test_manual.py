@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from scanplan.store import column_lists
+
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("config/*.md"), *ROOT.glob("docs/*.md")])
 SCHEMA = ROOT / "workflow/schemas/config.schema.yaml"
@@ -61,3 +63,22 @@ def test_every_page_of_the_manual_is_reached_from_its_first():
         names = (link.partition("#")[0] for link in links if "://" not in link)
         ahead += [(page.parent / name).resolve() for name in names if name]
     assert [page.name for page in PAGES if page not in reached] == []
+
+
+def test_columns_of_tables_are_those_of_their_schemas():
+    text = (ROOT / "config/outputs.md").read_text("utf-8")
+    assert column_lists.fill_columns(text) == text, "run `make settings`"
+
+
+def test_every_table_that_outlasts_a_run_has_its_columns_in_the_manual():
+    text = (ROOT / "config/outputs.md").read_text("utf-8")
+    listed = re.findall(r"(?m)^<!-- columns (\S+) -->$", text)
+    of_chunks = {name for name in column_lists.list_schemas() if name.startswith("CHUNK_")}
+    assert sorted(listed) == sorted(column_lists.list_schemas().keys() - of_chunks)
+
+
+def test_a_list_of_columns_is_written_between_its_marks():
+    text = "a\n<!-- columns ELEMENT_IDS -->\nold\n<!-- end -->\nb\n"
+    names = "`kind`, `number`, `global_id`"
+    filled = f"a\n<!-- columns ELEMENT_IDS -->\n{names}\n<!-- end -->\nb\n"
+    assert column_lists.fill_columns(text) == filled
