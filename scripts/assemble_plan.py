@@ -109,8 +109,8 @@ def assemble_plan(
         columns = getattr(plan, name)
         tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
     log.log_line(
-        f"assemble_plan: {is_used.sum():,} segments of {count} scans ({reason})"
-        f" make {messages.summarise_plan(plan)}"
+        f"assemble_plan: {messages.summarise_plan(plan)}; {is_used.sum():,} segments of"
+        f" {count} scans; {reason}"
     )
 
 

@@ -49,7 +49,7 @@ def draw_figures(
     chosen_ids, reason = stopping.read_chosen_scans(made["selection"], **stop)
     for name, figure in _draw_figures(made, poses, chosen_ids):
         atomic.write_text(outputs[name], figure_files.format_svg(figure))
-    log.log_line(f"draw_figures: {len(chosen_ids)} scans selected ({reason})")
+    log.log_line(f"draw_figures: {reason}")
 
 
 def _draw_figures(

@@ -84,13 +84,12 @@ def _log_measures(measures: Mapping[str, Any], free: FilePath, poses: FilePath) 
     if pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE)):
         frames = ["aligned"]
         log.log_line(
-            "evaluate_plan: the poses are odometry, so that the plan lies in the frame of the first"
-            " scan and not of the truth: only what is measured after one rigid motion says how good"
-            " it is"
+            "evaluate_plan: the poses are odometry: the aligned figures say how good the plan is,"
+            " as it lies in the first scan's frame"
         )
     for frame in frames:
         words = plan_metrics.summarise_plan_measures(measures[frame], has_heights=has_heights)
-        log.log_line(f"evaluate_plan: {frame} ({_FRAMES[frame]}): {words}")
+        log.log_line(f"evaluate_plan: {frame}, {words} ({_FRAMES[frame]})")
 
 
 if __name__ == "__main__":

@@ -56,10 +56,10 @@ def measure_crispness(
         for name, points_m in maps.items()
     }
     tables.write_table(output, schemas.CRISPNESS, plane_scatter.scatter_columns(measured))
-    medians = [f"{name} {1000 * scatter.median_m:.1f} mm" for name, scatter in measured.items()]
+    before_mm, after_mm = (1000 * measured[name].median_m for name in ("localiser", "registered"))
     log.log_line(
-        f"measure_crispness: walls are thick by {', '.join(medians)}"
-        " (median of the places with scans on each other)"
+        f"measure_crispness: scatter {before_mm:.1f} mm, registered {after_mm:.1f} mm; median"
+        " standard deviation of points across surfaces that several scans show"
     )
 
 

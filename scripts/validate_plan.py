@@ -78,7 +78,7 @@ def validate_plan(
         notes=doubts.Doubts(findings=tuple(spoken)).as_notes(),
     )
     log.log_line(
-        f"validate_plan: {n_drawn} of {n_left_out} scans left out; {result};"
+        f"validate_plan: {result}; {n_drawn} of {n_left_out} unused scans;"
         f" {_summarise_confidence(rated)}"
     )
 

@@ -83,7 +83,6 @@ def test_of_odometry_the_figures_after_one_motion_come_first(tmp_path):
     tables.write_table(files["poses"], schemas.POSES, report_making.poses(), notes=notes)
     text = written(tmp_path, files).read_text()
     assert Tables(text).rows["truth"][0][1:3] == ["aligned", "registered"]
-    assert "registered, where it lies, says nothing" in text
 
 
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
@@ -100,9 +99,8 @@ def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
 
 def test_it_says_how_well_the_plan_predicts(report):
     said = report.read_text().partition('<p id="prediction">')[2].partition("</p>")[0]
-    assert "It predicts 90.0% (85.0% to 93.0%) of 1,000 rays of 1 scan that was not used" in said
-    assert "2.0% passed through it and 1.0% ended where nothing is drawn" in said
-    assert "Rays agree with 95.0% of the length of faces, openings and outlines." in said
+    counted = ["1 ", "1,000", "90.0%", "85.0%", "93.0%", "7.0%", "2.0%", "1.0%", "95.0%"]
+    assert re.findall(r"[\d,.]+%|\d,\d{3}|\b1 ", said) == counted
 
 
 def links(report):

@@ -9,6 +9,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 from scanplan.project.run.console import RunConsole
 from scanplan.project.run.terminal import Terminal
+from scanplan.project.texts import CONSOLE_WIDTH
 
 
 class Screen(io.StringIO):
@@ -154,10 +155,44 @@ def test_lines_in_place_are_written_over():
     assert screen.getvalue().endswith("\x1b[1A\r\x1b[J")
 
 
-def test_no_line_of_a_screen_wraps():
+def test_no_line_that_is_written_over_wraps():
     screen = Screen()
-    Terminal(screen).say("x" * 100)
+    Terminal(screen).show(["x" * 100])
     assert screen.getvalue() == "x" * 58 + "…\n"
+
+
+def test_what_stays_on_a_screen_is_folded_to_its_width_and_no_word_is_lost():
+    screen = Screen()
+    words = ["word"] * 40
+    Terminal(screen).say(" ".join(words))
+    lines = screen.getvalue().splitlines()
+    assert max(map(len, lines)) <= 59 and " ".join(lines).split() == words
+
+
+def test_why_a_run_ends_is_one_line_of_a_file_and_folded_on_a_screen():
+    line = " ".join(["scanplan:", *["word"] * 40])
+    file, screen = io.StringIO(), Screen()
+    for stream in (file, screen):
+        Terminal(stream).refuse(line)
+    assert file.getvalue() == f"{line}\n"
+    assert max(map(len, screen.getvalue().splitlines())) <= 59
+
+
+def test_every_line_about_a_stage_fits_and_its_warnings_are_whole(file):
+    name = "a_floor_" * 10
+    console = RunConsole(Terminal(file), [name])
+    console.emit(record(LogEvent.RUN_INFO, stats={"assemble_plan": 123, "total": 123}))
+    found = "; ".join(["29 walls (15 with thickness, 1 to verify), 143.8 m"] * 9)
+    warned = " ".join(["word"] * 60)
+    log = Path("a.log")
+    stage = {"rule_name": "assemble_plan", "log": [str(log)], "wildcards": {"dataset": name}}
+    console.emit(record(LogEvent.JOB_INFO, jobid=1, **stage))
+    log.write_text(f"12:00 WARNING assemble_plan: {warned}\n12:00 INFO assemble_plan: {found}\n")
+    console.emit(record(LogEvent.JOB_FINISHED, job_id=1))
+    lines = file.getvalue().splitlines()
+    assert max(map(len, lines)) <= CONSOLE_WIDTH
+    assert sum(line.split().count("word") for line in lines) == 60
+    assert " s  29 walls" in lines[-1] and lines[-1].endswith("…")
 
 
 @pytest.mark.parametrize("term", ["xterm", "dumb"])

@@ -1,5 +1,6 @@
 """Walls, faces and evidence of houses known on paper."""
 
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -367,12 +368,13 @@ class TestEvidence:
 @pytest.mark.parametrize(
     ("errors_mm", "said"),
     [
-        ([0, 0], "ranges taken as they are"),
-        ([0, -0.3, -0.31], "ranges 0.3 mm too short, corrected"),
-        ([0, -0.3, -2], "ranges 0.3 to 2.0 mm too short, corrected"),
-        ([0, 4, 12.5], "ranges 4.0 to 12.5 mm too long, corrected"),
-        ([-1, 3], "ranges 1.0 mm too short to 3.0 mm too long, corrected"),
+        ([0, 0], []),
+        ([0, -0.3, -0.31], ["-0.3"]),
+        ([0, -0.3, -2], ["-2.0", "-0.3"]),
+        ([0, 4, 12.5], ["+4.0", "+12.5"]),
+        ([-1, 3], ["-1.0", "+3.0"]),
     ],
 )
-def test_errors_of_ranges_are_told_without_signs(errors_mm, said):
-    assert messages.summarise_range_bias(np.array(errors_mm) / 1000) == said
+def test_the_bias_of_ranges_is_told_from_the_most_too_short_to_the_most_too_long(errors_mm, said):
+    told = messages.summarise_range_bias(np.array(errors_mm) / 1000)
+    assert re.findall(r"[+-]\d+\.\d", told) == said

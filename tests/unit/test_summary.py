@@ -1,9 +1,12 @@
 """A plan in lines that a surveyor reads."""
 
+import re
+
 import numpy as np
 
 from helpers import floorplan_making, report_making
 from scanplan.plan import floorplan
+from scanplan.project.texts import CONSOLE_WIDTH
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.report.summary import summarise_survey
 from scanplan.store import doubts
@@ -29,16 +32,24 @@ def plan(**tables):
     return floorplan.FloorPlan(name="office", **(made | tables))
 
 
+def told_of(made, known=None):
+    """Return what a summary says, by the word that each of its texts begins with."""
+    text = summarise_survey(made, known or survey())
+    assert max(map(len, text.splitlines())) <= CONSOLE_WIDTH
+    lines = text.replace("\n" + 9 * " ", " ").splitlines()
+    return {line[:9].strip(): line[9:] for line in lines}
+
+
 def test_it_counts_what_was_found_and_names_what_is_doubtful():
-    verdict, found, _, made_of, tested = summarise_survey(plan(), survey()).splitlines()
+    told = told_of(plan())
     n_rooms = len(floorplan_making.rooms()["room"])
-    assert verdict.startswith("verdict  a ")
-    assert found.startswith(f"found    {n_rooms} rooms, ") and "m² of floor" in found
-    assert made_of.startswith("made of  3 of 4 registered scans (5 candidates of 1,064 recorded)")
-    assert tested.startswith(
-        "tested   It predicts 90.0% (85.0% to 93.0%) of 1,000 rays of 1 scan that was not used:"
-        " 7.0% stopped"
-    )
+    assert list(told) == ["verdict", "found", "doubtful", "made of", "tested"]
+    assert told["verdict"].startswith("a ")
+    assert told["found"].startswith(f"{n_rooms} rooms, ") and "m² of floor" in told["found"]
+    counted = "3 of 4 registered scans (5 candidates of 1,064 recorded)"
+    assert told["made of"].startswith(counted)
+    shares = ["90.0%", "85.0%", "93.0%", "7.0%", "2.0%", "1.0%", "95.0%"]
+    assert re.findall(r"[\d.]+%", told["tested"]) == shares
 
 
 def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
@@ -48,10 +59,8 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
     doubt = np.full(n, "", object)
     p_true[[0, 1]], verify[[0, 1]], doubt[[0, 1]] = (0.4, 0.2), True, "few rays"
     rated = made | {"p_true": p_true, "verify": verify, "doubt": doubt}
-    doubtful = summarise_survey(plan(openings=rated), survey()).splitlines()[2]
-    assert doubtful == (
-        "doubtful 2 openings (1, 0), 1 wall (2) to verify on site (report.html says why)"
-    )
+    doubtful = told_of(plan(openings=rated))["doubtful"]
+    assert doubtful.startswith("2 openings (1, 0), 1 wall (2) to verify on site")
 
 
 def test_a_plan_whose_elements_are_not_rated_says_so():
@@ -59,16 +68,15 @@ def test_a_plan_whose_elements_are_not_rated_says_so():
     n = len(made["wall"])
     unrated = {"p_true": np.full(n, np.nan), "verify": np.zeros(n, bool)}
     unrated["doubt"] = np.full(n, "", object)
-    doubtful = summarise_survey(plan(walls=made | unrated), survey()).splitlines()[2]
-    assert doubtful.endswith("is not known, as no heights above the floor were seen")
+    assert "no confidence scores" in told_of(plan(walls=made | unrated))["doubtful"]
 
 
 def test_an_unknown_prediction_is_no_number():
     unknown = PredictionFacts(
         0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"
     )
-    tested = summarise_survey(plan(), survey(unknown)).splitlines()[-1]
-    assert tested.endswith("is not known: one scan alone.") and "%" not in tested
+    tested = told_of(plan(), survey(unknown))["tested"]
+    assert "one scan alone" in tested and "%" not in tested
 
 
 def test_a_plan_without_doubts_says_so_and_many_are_counted_alone():
@@ -76,19 +84,17 @@ def test_a_plan_without_doubts_says_so_and_many_are_counted_alone():
     sure = walls | {"verify": np.zeros(len(walls["wall"]), bool)}
     rooms = floorplan_making.rooms()
     closed = rooms | {"closed": np.ones(len(rooms["room"]), bool)}
-    text = summarise_survey(plan(walls=sure, rooms=closed), survey())
-    assert "doubtful nothing that the plan marks" in text
+    assert told_of(plan(walls=sure, rooms=closed))["doubtful"].startswith("nothing")
     nine = {name: np.repeat(values[:1], 9) for name, values in rooms.items()}
     nine |= {"room": np.arange(9), "closed": np.zeros(9, bool)}
-    text = summarise_survey(plan(walls=sure, rooms=nine), survey())
-    assert "doubtful 9 rooms to verify on site (report.html says why)\n" in text
+    assert told_of(plan(walls=sure, rooms=nine))["doubtful"].startswith("9 rooms to verify")
 
 
 def test_what_speaks_against_all_of_it_stands_before_what_is_merely_noted():
     jump = doubts.Finding("map jump", 9.0, "the map jumps", "it was carried", "cut it")
     apart = doubts.Finding("days apart", 2.0, "recordings lie apart", "two states", "part them")
     found = plan(doubted=doubts.Doubts(findings=(apart, jump)))
-    lines = {line[:9].strip(): line[9:] for line in summarise_survey(found, survey()).splitlines()}
+    lines = told_of(found)
     assert lines["verdict"].startswith("not a plan: ")
     assert lines["verdict"].endswith("; it was carried; cut it")
     assert lines["doubtful"].startswith("the map jumps: it was carried; cut it; ")
@@ -97,7 +103,6 @@ def test_what_speaks_against_all_of_it_stands_before_what_is_merely_noted():
 
 def test_how_far_each_control_and_check_point_is_off_is_told():
     reference = floorplan.GeoReference("EPSG:25832", 5e5, 54e5, 0.0, 0.2, [0.1, 0.3], [0.25])
-    lines = summarise_survey(plan(georeference=reference), survey()).splitlines()
-    (placed,) = [line for line in lines if line.startswith("placed")]
+    placed = told_of(plan(georeference=reference))["placed"]
     assert "2 control points, off by 0.100, 0.300 m" in placed and "EPSG:25832" in placed
     assert placed.endswith("1 check point, off by 0.250 m")

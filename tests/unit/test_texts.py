@@ -7,7 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from scanplan.errors import StageError
-from scanplan.project.texts import check_path, check_text, find_unfit, join_pairs
+from scanplan.project.texts import (
+    check_path,
+    check_text,
+    cut_line,
+    find_unfit,
+    fold_line,
+    join_pairs,
+)
 
 
 @given(st.text(st.characters(exclude_categories=["Cs"])))
@@ -62,3 +69,38 @@ def test_a_path_is_refused_for_what_cannot_be_shown_alone(path):
     else:
         with pytest.raises(StageError, match="rename it"):
             check_path(path)
+
+
+WORDS = st.lists(st.text("abc(,;:) ", min_size=1, max_size=12), max_size=30).map(" ".join)
+
+
+@given(WORDS, st.integers(20, 60), st.integers(0, 8))
+def test_a_folded_line_has_all_words_and_fits(text, width, indent):
+    lines = fold_line(text, width=width, indent=indent)
+    assert " ".join(lines).split() == text.split()
+    assert max(map(len, lines), default=0) <= width
+
+
+def test_a_word_that_is_longer_than_a_line_stays_whole():
+    path = "a" * 30 + "-" + "b" * 30
+    folded = fold_line(f"see {path} for more", width=20, indent=2)
+    assert folded == ["see", f"  {path}", "  for more"]
+
+
+@given(WORDS, st.integers(0, 60))
+def test_a_cut_line_fits_and_is_the_beginning_of_the_text(text, width):
+    cut = cut_line(text, width)
+    assert len(cut) <= max(width, 20)
+    assert cut == text or text.startswith(cut.removesuffix("…").rstrip())
+
+
+@pytest.mark.parametrize(
+    ("text", "cut"),
+    [
+        ("8 walls (2 to verify), 19.4 m; 13 faces", "8 walls (2 to verify), 19.4 m …"),
+        ("8 walls (2 to verify, 3 not; all in a row)", "8 walls …"),
+        ("nothing in it is a clause that ends before", "nothing in it is a clause that …"),
+    ],
+)
+def test_a_line_is_cut_between_clauses_and_never_within_brackets(text, cut):
+    assert cut_line(text, 32) == cut

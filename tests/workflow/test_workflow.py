@@ -62,7 +62,7 @@ def test_the_plan_and_its_report_are_there_and_the_user_is_told(project):
     assert [p for p in made if "/selection/" in p] == ["results/demo/selection/wall_length.parquet"]
     said = project.said["plan"]
     assert "results/demo/plan/plan.pdf" in said and "results/demo/report.html" in said
-    assert "of floor" in said and "doubtful" in said and "took" in said
+    assert re.search(r"of\s+floor", said) and "doubtful" in said and "took" in said
     stages = re.findall(r"^ *(\d+)/(\d+) demo (\w+)", said, re.M)
     assert [int(done) for done, _, _ in stages] == list(range(1, len(stages) + 1))
     assert {total for _, total, _ in stages} == {str(len(stages))}

@@ -125,16 +125,13 @@ def summarise_plan(plan: Plan) -> str:
 
 
 def summarise_range_bias(range_errors_m: FloatArray) -> str:
-    """Return in a phrase how wrong ranges were, of the (181,) metres that they are too long by."""
+    """Return in a phrase the bias of ranges, of the (181,) metres that they are too long by."""
     errors_mm = 1000 * range_errors_m[range_errors_m != 0]
     if len(errors_mm) == 0:
-        return "ranges taken as they are"
-    low, high = (round(float(error), 1) for error in (errors_mm.min(), errors_mm.max()))
-    if low < 0 < high:
-        return f"ranges {-low:.1f} mm too short to {high:.1f} mm too long, corrected"
-    least, most = sorted((abs(low), abs(high)))
-    size = f"{most:.1f}" if least == most else f"{least:.1f} to {most:.1f}"
-    return f"ranges {size} mm too {'short' if low < 0 else 'long'}, corrected"
+        return "no range bias removed"
+    low, high = (f"{float(error):+.1f}" for error in (errors_mm.min(), errors_mm.max()))
+    size = low if low == high else f"{low} to {high}"
+    return f"per-beam range bias of {size} mm removed"
 
 
 def _ranges_m(rays: RaySet) -> FloatArray:

@@ -1,16 +1,22 @@
-"""Words that a person gives, names and paths: which characters they may have, and how many.
+"""Words that a person gives or reads: which characters they may have, and how many in a line.
 
 Standard library only: this runs while the workflow is being parsed.
 """
 
 import os
 import re
+import textwrap
 
 from scanplan.errors import StageError
 from scanplan.plain_types import FilePath
 
 LONGEST_NAME = 80
 """Characters of a name: more than fit into any drawing's label."""
+CONSOLE_WIDTH = 100
+"""Columns of a line on the console: as many as the code's, half of a wide screen."""
+_LEAST_SAID = 20
+"""Characters of what a line says that stay however little room there is."""
+_CLAUSE_END = re.compile(r";? \(|[;,:] ")
 _LONGEST_PATH = 4095
 """Bytes of a path that Linux takes; a Mac takes 1,023."""
 _LONGEST_PART = 255
@@ -27,6 +33,45 @@ _UNFIT = re.compile(
     )
     + "]"
 )
+
+
+def fold_line(line: str, *, indent: int = 4, width: int = CONSOLE_WIDTH) -> list[str]:
+    """Return a line as lines that fit, broken between words; a longer word stays whole.
+
+    Parameters
+    ----------
+    line : str
+    indent : int
+        Spaces that all but the first line begin with.
+    width : int
+        Characters.
+    """
+    if len(line) <= width:
+        return [line]
+    return textwrap.wrap(
+        line,
+        width,
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def cut_line(text: str, width: int) -> str:
+    """Return a text, or as many of its first clauses as fit, with `…` for the rest.
+
+    Parameters
+    ----------
+    text : str
+    width : int
+        Characters; a width below 20 counts as 20.
+    """
+    room = max(width, _LEAST_SAID)
+    if len(text) <= room:
+        return text
+    ends = [found.start() for found in _CLAUSE_END.finditer(text[: room - 1])]
+    whole = [end for end in ends if text[:end].count("(") == text[:end].count(")")]
+    return f"{text[: whole[-1]]} …" if whole else f"{text[: room - 1]}…"
 
 
 def find_unfit(text: str) -> str | None:

@@ -129,9 +129,8 @@ def summarise_constraints(optimised: OptimisedMap | None) -> str:
     n_jumps = int((optimised.prior_weight < INLIER_WEIGHT).sum())
     variance_m2 = np.trace(optimised.covariance[:, :2, :2], axis1=1, axis2=2) / 2
     sigma_m = np.sqrt(np.median(variance_m2))
-    spread = (
-        "" if np.isnan(sigma_m) else f"; half of the poses are known to {sigma_m:.3f} m an axis"
-    )
+    uncertainty = f"; median pose uncertainty {1000 * sigma_m:.1f} mm an axis"
+    spread = "" if np.isnan(sigma_m) else uncertainty
     return (
         f"constraints: {', '.join(counts) or 'none'};"
         f" {n_jumps:,} of {optimised.recorded} are outliers{spread}"

@@ -7,10 +7,13 @@ import numpy as np
 
 from scanplan.errors import MOST_NAMED
 from scanplan.plan import floorplan
+from scanplan.project.texts import fold_line
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
 from scanplan.validation.doubts import list_doubts, list_unrated
 from scanplan.validation.verdict import judge_plan
+
+_INDENT = 9  # of the longest word before a line, `doubtful`
 
 
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
@@ -24,7 +27,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     Returns
     -------
     str
-        Each line ends with a newline.
+        Each line ends with a newline; what is longer than the console is wide goes on below.
     """
     rooms, walls, openings = plan.rooms, plan.walls, plan.openings
     ways = [
@@ -58,7 +61,8 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         ("made of", used),
         ("tested", wording.prediction_sentence(survey.prediction)),
     ]
-    return "".join(f"{what:<9}{text}\n" for what, text in lines)
+    told = (f"{what:<{_INDENT}}{text}" for what, text in lines)
+    return "".join(f"{part}\n" for line in told for part in fold_line(line, indent=_INDENT))
 
 
 def _count_doubts(plan: floorplan.FloorPlan) -> list[str]:

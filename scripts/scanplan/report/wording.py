@@ -30,18 +30,17 @@ def plan_sentence(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
 def prediction_sentence(prediction: PredictionFacts) -> str:
     """Return how well the plan predicts what other scans saw, or why that is not known."""
     if prediction.absent:
-        return f"How well it predicts what other scans saw is not known: {prediction.absent}."
+        return f"Not checked against unused scans: {prediction.absent}."
     low, high = prediction.bounds
     counts = (prediction.n_stopped, prediction.n_passed, prediction.n_beyond)
     stopped, passed, beyond = (n / prediction.n_rays for n in counts)
     n = prediction.n_scans
-    scans = "1 scan that was" if n == 1 else f"{n:,} scans that were"
     return (
-        f"It predicts {prediction.share:.1%} ({low:.1%} to {high:.1%}) of"
-        f" {prediction.n_rays:,} rays of {scans} not used:"
-        f" {stopped:.1%} stopped before what is drawn (furniture, people, or what is missing),"
-        f" {passed:.1%} passed through it and {beyond:.1%} ended where nothing is drawn. Rays agree"
-        f" with {prediction.length_share:.1%} of the length of faces, openings and outlines."
+        f"Check against {floorplan.say_count(n, 'unused scan')}: of {prediction.n_rays:,} rays"
+        f" {prediction.share:.1%} ({low:.1%} to {high:.1%}) end where the plan says, {stopped:.1%}"
+        f" before it (furniture, people, or something not drawn), {passed:.1%} pass through drawn"
+        f" surfaces, {beyond:.1%} end where nothing is drawn. Rays agree with"
+        f" {prediction.length_share:.1%} of the length of faces, openings and outlines."
     )
 
 
@@ -127,10 +126,10 @@ def review_note(plan: floorplan.FloorPlan) -> str:
     """Return how many walls are weakly supported."""
     n_to_verify = int(plan.walls["verify"].sum())
     return (
-        "Standard deviations of a wall's offset and of both its ends, against the rest of the plan:"
-        " by how far the poses of the scans that show it may be off, and by the spread of its"
-        f" points. {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported and"
-        " marked to be verified on site. Choosing a row shows what it is of in the plan."
+        "Standard deviations of each wall's offset and ends against the rest of the plan, from"
+        " pose uncertainty and the spread of points."
+        f" {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported: verify them"
+        " on site. A row chosen here is shown in the plan."
     )
 
 
@@ -139,8 +138,8 @@ def registration_note(survey: SurveyFacts) -> str:
     n_kept, n_candidates = _count_candidates(survey)
     source = "odometry" if survey.is_drifting else "the localiser"
     return (
-        f"{n_kept:,} of {n_candidates:,} candidate scans were kept. Medians by verdict; the shift"
-        f" is the way from where {source} put a scan to where it was registered."
+        f"{n_kept:,} of {n_candidates:,} candidate scans were kept. Medians by verdict; shift:"
+        f" from the pose by {source} to the registered one."
     )
 
 
@@ -148,9 +147,9 @@ def truth_note(survey: SurveyFacts) -> str:
     """Return in which frames the plan is measured, and which of the two says how good it is."""
     if survey.is_drifting:
         return (
-            "As the poses are odometry, the plan lies in the frame of its first scan: how good"
-            " it is says aligned, after the one rigid motion that fits the registered scans to the"
-            " true poses; registered, where it lies, says nothing."
+            "Use the aligned figures, after the one rigid motion that fits the registered scans to"
+            " the true poses. The registered ones mean nothing for odometry: the plan lies in the"
+            " frame of its first scan."
         )
     return (
         "Measured where the plan is in the map (registered), and after the one rigid motion that"

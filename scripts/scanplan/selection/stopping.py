@@ -144,7 +144,7 @@ def _by_share(columns: Columns, share: float) -> tuple[int, str]:
         raise ValueError(f"area_share is {share}, must be above 0 and at most 1")
     covered = columns.get("covered", columns["covered_m2"])
     k = int((covered >= share * covered[-1] - SMALLEST_M2).argmax()) + 1
-    return k, _say_share(k, f"{share:.4g}", columns)
+    return k, _say_share(k, f"{100 * share:.4g} %", columns)
 
 
 def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
@@ -152,7 +152,7 @@ def _by_scanner(columns: Columns, planar: bool) -> tuple[int, str]:
     fewest = min(_FEWEST[planar], n)
     k, said = _by_shares(columns, AUTO_SHARES[planar])
     if k < fewest:
-        return fewest, f"{fewest} of {n} scans: so few are not thinned further"
+        return fewest, f"{fewest} of {n} scans, the fewest that are taken"
     return k, said
 
 
@@ -168,13 +168,13 @@ def _by_shares(columns: Columns, shares: tuple[float, ...]) -> tuple[int, str]:
     k = min(paying, most, enough[0])
     if k == enough[0]:
         return enough
-    said = _say_share(k, f"{covered[k - 1] / covered[-1]:.3f}", columns)
+    said = _say_share(k, f"{100 * covered[k - 1] / covered[-1]:.1f} %", columns)
     if k < paying:
-        limits = f"{_MOST_SCANS:.0%}, {_FEWEST[True]}, or as many as show {shares[0]}"
-        return k, f"{said}; of planar scans no more are taken than {limits}"
+        limits = f"{100 * _MOST_SCANS:.0f} %, {_FEWEST[True]}, or as many as show"
+        return k, f"{said}; 2-D limit: {limits} {100 * shares[0]:.4g} %"
     if k == usual[0]:
         return usual
-    return k, f"{said}; the next adds less than {_PAYS:.4g} m, or m2"
+    return k, f"{said}; the next adds less than {_PAYS:.4g} m or m2"
 
 
 def _say_share(k: int, share: str, columns: Columns) -> str:
@@ -182,7 +182,7 @@ def _say_share(k: int, share: str, columns: Columns) -> str:
     chosen = f"{k} of {len(covered_m2)} scans"
     if np.array_equal(columns.get("covered", covered_m2), covered_m2):
         return f"{chosen} cover {share} of the {covered_m2[-1]:.1f} m2 that all cover"
-    return f"{chosen} show {share} of what all show, by the method's own measure"
+    return f"{chosen} show {share} of what all show"
 
 
 def _by_gain(gain_m2: FloatArray, least_m2: float) -> tuple[int, str]:

@@ -65,11 +65,8 @@ def list_unrated(plan: FloorPlan) -> list[str]:
     if len(known) == 0 or np.isfinite(known).any():
         return []
     if (plan.walls["doubt"] == UNRATED).all():
-        return [
-            "how likely elements are right is not known, as the stage that rates them failed: all"
-            " are to be verified"
-        ]
-    return ["how likely elements are is not known, as no heights above the floor were seen"]
+        return ["no confidence scores: the stage that rates elements failed; verify all on site"]
+    return ["no confidence scores: no heights above the floor were seen, as by a 2-D scanner"]
 
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:

@@ -156,8 +156,8 @@ def summarise_counts(found: Validation) -> str:
     shares = [f"{whole[name] / whole['n_rays']:.1%} {name[2:]}" for name in _COUNTS.values()]
     bounds = f"{whole['share_low']:.1%} to {whole['share_high']:.1%}"
     length = f"{found.elements['share'][-2]:.1%} of the drawn length"
-    counted = f"{whole['n_rays']:,} rays, {', '.join(shares)} (explained {bounds})"
-    return f"{counted}; agree with {length}, within {found.tolerance_m:.3f} m"
+    counted = f"{', '.join(shares)} of {whole['n_rays']:,} rays; explained {bounds}"
+    return f"{counted}; they agree with {length}, within {found.tolerance_m:.3f} m"
 
 
 def _count_groups(group: IntArray, outcome: IntArray, n_groups: int) -> dict[str, Array]:

@@ -109,14 +109,15 @@ def summarise_visit(visit: NextVisit) -> str:
     n_stops, n_seen = len(visit.standpoints["standpoint"]), int((standpoint > 0).sum())
     places = f"{n_stops} standpoint{'s' if n_stops != 1 else ''}"
     unseen = len(standpoint) - n_seen
-    rest = f"; {unseen} cannot be seen from any place that can be reached" if unseen else ""
+    rest = f"; {unseen} cannot be seen from any reachable place" if unseen else ""
     n_left = int((visit.questions["needs_person"] & (standpoint > 0)).sum())
     if n_left:
-        rest += f"; {n_left} of these no scan settles: a person has to look"
+        rest += f"; a person has to look at {n_left}, which scans do not settle"
     way_m = visit.standpoints["way_m"].sum()
+    verb = "shows" if n_stops == 1 else "show"
     return (
-        f"{n_seen} of {len(standpoint)} unseen or doubtful elements can be seen from {places}"
-        f" along {way_m:.0f} m{rest}"
+        f"{places} along {way_m:.0f} m {verb} {n_seen} of {len(standpoint)} unseen or doubtful"
+        f" elements{rest}"
     )
 
 

@@ -20,6 +20,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 from scanplan.interrupts import WATCHED
 from scanplan.project.dataset_files import TARGETS
 from scanplan.project.run.terminal import Terminal
+from scanplan.project.texts import CONSOLE_WIDTH, cut_line
 
 _NOTHING_TO_DO = "Nothing to be done"  # how Snakemake begins to say that all results are there
 _NO_STAGES = ("total", *TARGETS)
@@ -27,6 +28,7 @@ _REDRAWN_EVERY_S = 0.25  # as often as an eye follows numbers
 _TOLD_EVERY_S = 60.0  # a log file of a run of an hour has a hundred lines more, not thousands
 _DEFAULT_SCREEN = "DefaultStreamHandler"
 _STAGE_WIDTH = 25  # characters of the longest usual name, `order_scans cluster_hull:`
+_MOST_NAME = 24  # characters of a dataset's: what its stages found needs the rest of a line
 _CHATTER = (
     "Assuming unrestricted",
     "Building DAG",
@@ -105,7 +107,7 @@ class RunConsole(logging.Handler):
     def __init__(self, terminal: Terminal, datasets: Iterable[str]) -> None:
         super().__init__()
         self._terminal = terminal
-        self._width = max(map(len, datasets), default=0)
+        self._width = min(max(map(len, datasets), default=0), _MOST_NAME)
         self._stages: dict[int, _Stage] = {}
         self._total = self._ended = 0
         self._is_over = threading.Event()
@@ -158,11 +160,11 @@ class RunConsole(logging.Handler):
             self._close(getattr(record, "jobid", -1), "failed")
         elif event == LogEvent.ERROR and not _is_of_stage(record):
             self.end()
-            self._terminal.say(f"scanplan: {_describe_error(record)}")
+            self._terminal.refuse(f"scanplan: {_describe_error(record)}")
 
     def _open(self, record: logging.LogRecord) -> None:
         of_job = dict(getattr(record, "wildcards", {}))
-        dataset = of_job.pop("dataset", "")
+        dataset = _shorten_name(of_job.pop("dataset", ""))
         name = " ".join([getattr(record, "rule_name", ""), *of_job.values()])
         now_s = time.monotonic()
         # an older log stays until the job has begun, and is not its own
@@ -179,8 +181,12 @@ class RunConsole(logging.Handler):
         said, warnings = stage.findings()
         for warning in warnings:
             self._terminal.say(self._line(stage, f"warning: {warning.partition(': ')[2]}"))
-        text = how if how else said
-        self._terminal.say(self._line(stage, f"{took_s:6.1f} s  {text}"))
+        self._terminal.say(self._timed_line(stage, took_s, how or said))
+
+    def _timed_line(self, stage: _Stage, took_s: float, text: str) -> str:
+        """Return a line with what a stage says as far as it fits: its log has the rest."""
+        before = self._line(stage, f"{took_s:6.1f} s  ")
+        return before + cut_line(text, CONSOLE_WIDTH - len(before))
 
     def _line(self, stage: _Stage, text: str) -> str:
         done = f"{self._ended:{len(str(self._total))}}/{self._total}"
@@ -208,7 +214,7 @@ class RunConsole(logging.Handler):
                 self._terminal.say(self._running_line(stage, now_s))
 
     def _running_line(self, stage: _Stage, now_s: float) -> str:
-        return self._line(stage, f"{now_s - stage.began_s:6.1f} s  {stage.progress() or '...'}")
+        return self._timed_line(stage, now_s - stage.began_s, stage.progress() or "...")
 
     def _is_for_the_user(self, record: logging.LogRecord) -> bool:
         """Return whether Snakemake's own screen still shows a message."""
@@ -218,6 +224,13 @@ class RunConsole(logging.Handler):
         if event in _CHATTER_EVENTS or str(record.msg).startswith(_CHATTER):
             return False
         return record.levelno >= logging.WARNING or not self._total
+
+
+def _shorten_name(name: str) -> str:
+    """Return a dataset's name, of a long one the beginning and the end."""
+    if len(name) <= _MOST_NAME:
+        return name
+    return f"{name[: _MOST_NAME // 2]}…{name[1 - _MOST_NAME // 2 :]}"
 
 
 def _is_of_stage(record: logging.LogRecord) -> bool:

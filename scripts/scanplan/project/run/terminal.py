@@ -10,13 +10,20 @@ from collections.abc import Sequence
 from typing import TextIO
 
 from scanplan.errors import show_controls
+from scanplan.project.texts import CONSOLE_WIDTH, fold_line
 
 _ERASE_BELOW = "\x1b[J"
 
 
 def tell(text: str) -> None:
-    """Write lines on the error output, none of whose characters steers a terminal."""
-    print(*map(show_controls, text.split("\n")), sep="\n", file=sys.stderr)
+    """Write lines on the error output, none of whose characters steers a terminal.
+
+    On a screen they are folded; in a file each stays one line, which programs find.
+    """
+    lines = [show_controls(line) for line in text.split("\n")]
+    if sys.stderr.isatty():
+        lines = [part for line in lines for part in fold_line(line)]
+    print(*lines, sep="\n", file=sys.stderr)
 
 
 class Terminal:
@@ -40,8 +47,19 @@ class Terminal:
         self._live: Sequence[str] = ()
 
     def say(self, line: str) -> None:
-        """Write a line that stays, above those that are in place; cut to the width of a screen."""
-        self._write(self._erase() + self._fit(line) + "\n" + self._draw())
+        """Write a line that stays, above those that are in place, folded."""
+        width = min(CONSOLE_WIDTH, self._columns() - 1) if self.in_place else CONSOLE_WIDTH
+        self._add(fold_line(show_controls(line), width=width))
+
+    def refuse(self, line: str) -> None:
+        """Write a line that says why a run ends: in a file one line, which programs find."""
+        if self.in_place:
+            self.say(line)
+        else:
+            self._add([show_controls(line)])
+
+    def _add(self, lines: Sequence[str]) -> None:
+        self._write(self._erase() + "\n".join(lines) + "\n" + self._draw())
 
     def show(self, lines: Sequence[str]) -> None:
         """Write lines in the place of those that were shown last; nothing where that cannot be."""
@@ -61,8 +79,12 @@ class Terminal:
         line = show_controls(line)
         if not self.in_place:
             return line
-        width = shutil.get_terminal_size().columns - 1
+        width = self._columns() - 1
         return line if len(line) <= width else f"{line[: width - 1]}…"
+
+    @staticmethod
+    def _columns() -> int:
+        return shutil.get_terminal_size().columns
 
     def _write(self, text: str) -> None:
         self._stream.write(text)
