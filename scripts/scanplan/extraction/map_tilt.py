@@ -27,7 +27,7 @@ def sample_scan_ids(scan_ids: list[int], most: int = 10) -> list[int]:
 def measure_tilt(
     scans: Iterable[tuple[FloatArray, FloatArray]], reach_deg: float = 3.5
 ) -> Measured:
-    """Return how far the z of a map leans by its surfaces; not at all where too few are seen.
+    """Return the tilt of a map's z by its surfaces; 0 where too few are seen.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What the rays of one scan or many say of the surfaces and the space that they met."""
+"""Ray evidence on surfaces, openings and free space."""

@@ -1,4 +1,4 @@
-"""How far the rays of scans go, by azimuth sector.
+"""Ray reach by azimuth sector.
 
 A bound that shows which rays cannot come near a line.
 """

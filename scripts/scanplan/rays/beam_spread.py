@@ -1,4 +1,4 @@
-"""How the beams of scans are spread: what is between them, and where a planar scanner looks."""
+"""Spacing of beams, and the field of view of planar scanners."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class PlanarBeams:
 
 
 def observe_beams(scans: Iterable[tuple[FloatArray, FloatArray]]) -> PlanarBeams:
-    """Return what planar scans show of the beams that their sensor sends.
+    """Return the field, spacing and reach of a planar sensor's beams.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How many returns a surface ought to give, by what the same scan gets back elsewhere.
+"""Expected returns of a surface, from the same scan's returns elsewhere.
 
 The missing-return test.
 

@@ -1,4 +1,4 @@
-"""What all scans show of the surface of one line.
+"""Ray evidence of all scans on the surface of one line.
 
 Returns, rays through it, glass, and the raster of these.
 """

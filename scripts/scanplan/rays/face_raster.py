@@ -30,7 +30,7 @@ class Cells(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FaceRaster:
-    """What rays say of a surface, in cells.
+    """Ray counts of a surface, in cells.
 
     Attributes
     ----------
@@ -88,11 +88,11 @@ class FaceRaster:
         return self._count_below(self.free, self._n_free, below_m)
 
     def is_crossed(self, below_m: float) -> BoolArray:
-        """Return in which columns (c,) more rays go through below a height than end there."""
+        """Return the columns (c,) with more free than occupied rays below a height."""
         return self.count_free(below_m) > self.count_occupied(below_m)
 
     def is_opened(self, below_m: float) -> BoolArray:
-        """Return in which columns (c,) that are crossed not just one or two rays go through."""
+        """Return the crossed columns (c,) with more than two free rays."""
         return self.is_crossed(below_m) & (self.count_free(below_m) >= FEW)
 
     def find_opened(self, below_m: float) -> FloatArray:
@@ -112,11 +112,11 @@ class FaceRaster:
         return find_stretches(is_opened, self.first_m)
 
     def is_solid(self, below_m: float) -> BoolArray:
-        """Return in which columns (c,) rays end below a height and hardly one goes through."""
+        """Return the columns (c,) occupied below a height and not opened."""
         return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
 
     def is_overlooked(self, below_m: float) -> BoolArray:
-        """Return in which columns (c,) of a plane not just strays pass over what rays end at."""
+        """Return the columns (c,) of planar scans with more free rays than strays."""
         few = np.maximum(FEW, STRAY_SHARE * self.count_occupied(below_m))
         return self.count_free(below_m) >= few
 

@@ -1,4 +1,4 @@
-"""The rays that scans sent at the surface of a line, and what became of each.
+"""Rays that met the surface of a line: occupied, free or occluded.
 
 The one place where rays are classified.
 

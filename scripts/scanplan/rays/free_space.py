@@ -1,4 +1,4 @@
-"""Floor that rays went over: what each scan sees of it, and all of them together."""
+"""Free floor: of each scan, and of all scans together."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -23,7 +23,7 @@ GRID_M = (
 
 
 def free_polygons(rays: RaySet) -> list[MultiPolygon]:
-    """Return what each scan's rays went over, as polygons.
+    """Return the free floor of each scan as polygons.
 
     In every half degree (more where a sensor's rays are further apart) a ray of the longest tenth
     shows how far one can see; a planar scan has one ray a direction, and its outline runs from one

@@ -1,4 +1,4 @@
-"""Rays that reached a surface and came back from nowhere, by heights: what glass does to them."""
+"""Missing returns at a surface, by height: the sign of glass."""
 
 import itertools
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""What measured places err by, and what may be stray: the same for all that reads rays."""
+"""Position tolerances and outlier counts of all ray evidence."""
 
 ON_M = 0.08
 """Returns of one scan this near to a surface are its own: noise of ranges and roughness."""

@@ -106,7 +106,7 @@ def _fuse(
 def comparable_scans(
     scan: PlacedScan, previous: Sequence[PlacedScan], settings: SequentialSettings
 ) -> list[PlacedScan]:
-    """Return the previous scans that may show what a scan shows: near, and not turned away.
+    """Return the previous scans with an overlapping view: near, and not turned away.
 
     The last one is always among them.
 

@@ -1,4 +1,4 @@
-"""What of a registration cannot be if the recording's units, mounting and clock are right."""
+"""Contradictions between a registration and the stated units, mounting and clock."""
 
 from collections.abc import Callable, Iterable, Sequence
 
@@ -149,7 +149,7 @@ def choose_some(rows: IntArray) -> IntArray:
 
 
 def _measure_scale(scale: float, sigma: float) -> Measured:
-    """Return how far a scale is surely off 1, and which unit that is."""
+    """Return the least error of a scale, and the unit that explains it."""
     off = float(np.clip(abs(scale - 1) - _SURE * sigma, 0.0, None))
     cause = "the scale of ranges or of poses is wrong"
     remedy = "calibrate both against a tape"
@@ -190,7 +190,7 @@ def _measure_jumps(
 
 
 def _remedy_jump(by: str, after_s: float) -> str:
-    """Return what mends a map that jumps: odometry that goes on there needs no localiser."""
+    """Return the remedy of a map that jumps: odometry that goes on there, else a cut."""
     cut = CUT.format(after_s=after_s)
     if by != joins.ODOMETRY:
         return cut

@@ -1,4 +1,4 @@
-"""What to say where the gates of algorithm 3 leave nothing: shares, and what would pass."""
+"""Shares of frames at the gates of algorithm 3, and settings that some would pass."""
 
 from collections.abc import Callable, Iterable, Sequence
 

@@ -32,7 +32,7 @@ _NOTHING = ""
 
 
 class MapJump(NamedTuple):
-    """Where a map contradicts what is known of the motion between two scans.
+    """Jump of a map against the known motion between two scans.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ def find_map_jumps(
     steps: FloatArray | None,
     read_clouds: Callable[[IntArray], list[PreparedCloud]],
 ) -> list[MapJump]:
-    """Return how far the map is off at each scan that nothing ties to the one before.
+    """Return the jump of the map at each scan without a link to the one before.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def _find_too_fast(t_ns: IntArray, world_from_cloud: FloatArray) -> BoolArray:
 
 
 def _reach_m(apart_s: Any) -> Any:
-    """Return how far apart two scans may be so many seconds later."""
+    """Return the greatest distance of two scans, given the seconds between them."""
     return _NEAR_M + _SPEED_M_S * apart_s
 
 

@@ -1,4 +1,4 @@
-"""What was wrong with how poses or clouds were read, and what to do."""
+"""Misread poses or clouds: the reading that fits, and the remedy."""
 
 from typing import NamedTuple
 

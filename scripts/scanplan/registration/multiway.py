@@ -237,7 +237,7 @@ def choose_pairs(
     *,
     planar: bool,
 ) -> list[RowPair]:
-    """Choose the pairs of scans to align, other than those in sequence: what shows the same.
+    """Choose loop-closure candidates: non-consecutive scans with overlapping views.
 
     Parameters
     ----------

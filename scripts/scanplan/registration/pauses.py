@@ -12,7 +12,7 @@ _LEAST_SCANS = 3  # of a part: a scan or two that fit nothing displace next to n
 
 
 def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> Measured:
-    """Return how many pauses part a drive in two of which no scan is aligned to one of the other.
+    """Return the number of pauses without a link between the scans before and after.
 
     Parameters
     ----------

@@ -147,7 +147,7 @@ def _solve(information: FloatArray, gradient: FloatArray, reach_m: float) -> Flo
 
 
 def _turn_scale(reach_m: float) -> FloatArray:
-    """Return what makes a turn count by the way that points make in it, (3,)."""
+    """Return the lever arm (3,) that converts rotations to displacements."""
     return np.array([1, 1, 1 / max(reach_m, SHORTEST_M)])
 
 

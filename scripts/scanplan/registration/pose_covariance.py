@@ -1,4 +1,4 @@
-"""How far the poses of a pose graph may be off: what its measurements leave open."""
+"""Covariance of the poses of a pose graph."""
 
 from itertools import islice
 

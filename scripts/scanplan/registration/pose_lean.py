@@ -1,4 +1,4 @@
-"""How far the plane that a sensor was carried in leans, as it does in a map whose z is not up."""
+"""Lean of the plane that a sensor was carried in: the sign of a map whose z is not up."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The scale between ranges and poses, from how far alignments say that the sensor moved."""
+"""Scale between ranges and poses, from the motions that alignments measure."""
 
 from collections.abc import Sequence
 

@@ -121,7 +121,7 @@ def _delay_poses(
 
 
 def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
-    """Return what may be wrong with clouds, and by which matrix their points become right."""
+    """Return the possible misreadings of clouds, each with the matrix that corrects it."""
     # in the plane these two are one
     mirrored = Misreading(
         "the clouds are mirrored: a sensor that hangs upside down, or a y axis that points the"
@@ -158,7 +158,7 @@ def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
 
 
 def _list_tilts() -> list[tuple[Misreading, FloatArray]]:
-    """Return by how much a sensor may nod or lean on its mount, and what makes its points right."""
+    """Return possible tilts of a mount, each with the matrix that corrects its points."""
     found = []
     for name, one, other in (("pitch", 2, 0), ("roll", 1, 2)):
         for tilt_deg in _TILTS_DEG:

@@ -1,1 +1,1 @@
-"""What scans cover, and the orders in which they are taken into the plan."""
+"""Coverage of scans, and orders of scans by it."""

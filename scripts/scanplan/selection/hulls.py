@@ -1,4 +1,4 @@
-"""What a scan covers on the floor plan: one convex hull per cluster of its points.
+"""Covered area of a scan: one convex hull per cluster of its points.
 
 Thesis 3.3.2, algorithm 2.
 """

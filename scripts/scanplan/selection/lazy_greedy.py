@@ -19,7 +19,7 @@ _BATCH_GROWTH = 4  # few looks suffice for most choices, and those that need man
 
 
 class Cover(Protocol):
-    """What a growing choice covers, and what each of n choices would add to it."""
+    """Coverage of a growing choice, and the gain of each of n choices."""
 
     @property
     def gain(self) -> FloatArray:
@@ -113,7 +113,7 @@ def order_greedily(cover: Cover, *, tie: float, min_overlap: float = 0.0) -> Gre
 def choose_greedily(
     cover: Cover, *, tie: float, relative_tie: float = 0.0, most: FloatArray | None = None
 ) -> Iterator[tuple[int, float]]:
-    """Choose what adds most, the lowest index of equals, as long as anything may add something.
+    """Choose greedily by gain, the lowest index of equals, until no gain is left.
 
     Parameters
     ----------

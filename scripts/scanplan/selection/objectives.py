@@ -1,4 +1,4 @@
-"""What orders of scans maximise: covered area, free space looked through, length of wall shown.
+"""Objectives of orders: covered area, free space, length of visible wall.
 
 Each `cover_*` function makes the objective of a survey that `methods.METHODS` names.
 """

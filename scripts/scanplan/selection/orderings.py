@@ -127,7 +127,7 @@ def _measuring(method: Method) -> Method:
 
 
 def summarise_order(method: str, columns: Columns) -> str:
-    """Return in a line what an order covers, how soon, and how good its beginning is at least."""
+    """Return coverage, speed and guarantee of an order in a line."""
     covered = columns["covered"]
     first, _ = stopping.choose_n_scans(columns, area_share=_LOGGED_SHARE)
     bound = columns["bound"][first - 1]

@@ -16,7 +16,7 @@ _AROUND = [(along, across) for along in (-1, 0, 1) for across in (-1, 0, 1)]
 
 
 def weigh_by_persistence(columns: Columns, registered: RegisteredScans) -> dict[str, Array]:
-    """Return observations of planar scans in which what stays counts, and what does not, less.
+    """Return observations of planar scans, weighted by how often they persist.
 
     A cell counts in full where half of its best scan is shown: few returns stand for it, noise
     parts them between two rows in every scan, and each scan would add a little more of a wall that

@@ -1,4 +1,4 @@
-"""The scans of a survey that are to be put in order, and what an order may depend on."""
+"""Scans to order, and the data that orders depend on."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""How much wall a scan shows, and where: what an extractor could find, without running it.
+"""Length of visible wall by scan and cell, without running an extractor.
 
 The floor plan is divided into square cells, once for each of the four ways a surface can face (-x,
 +x, -y, +y). A return on an upright surface with horizontal unit normal n belongs to facing x with

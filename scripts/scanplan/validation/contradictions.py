@@ -1,4 +1,4 @@
-"""What of a plan cannot be if the recording's units, mounting and clock are right."""
+"""Contradictions between a plan and the stated units, mounting and clock."""
 
 import numpy as np
 import shapely

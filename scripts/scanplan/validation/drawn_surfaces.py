@@ -1,4 +1,4 @@
-"""What a plan says that rays meet: surfaces that end them, and ways that let them through."""
+"""Surfaces and openings of a plan, as rays meet them."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

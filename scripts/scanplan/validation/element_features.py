@@ -1,4 +1,4 @@
-"""What is known of the elements of a plan without any truth: their evidence, and how they fit."""
+"""Features of a plan's elements: their evidence, and their fit to their surroundings."""
 
 import numpy as np
 import shapely

@@ -1,4 +1,4 @@
-"""Mirrors on walls: what rays show behind one is the room before it once more.
+"""Mirrors on walls: behind one, rays show the room before it again.
 
 A mirror hangs along the line of a wall's face. Rays that cross the line there, of which nobody ever
 went behind it, end where others ended before it, once their ends are mirrored back.

@@ -1,4 +1,4 @@
-"""What becomes of rays in a plan: where the plan says that they end, and where they did."""
+"""Outcomes of rays in a plan: predicted against measured ends."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What stands around the elements of a plan: a wall that is none seldom fits its neighbours."""
+"""Surroundings of a plan's elements: a false wall seldom fits its neighbours."""
 
 import numpy as np
 import shapely

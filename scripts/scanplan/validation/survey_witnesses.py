@@ -1,4 +1,4 @@
-"""What of a plan cannot be, of what its own rays and sizes tell: numbers with limits."""
+"""Contradictions of a plan with its own rays and sizes: numbers with limits."""
 
 import numpy as np
 import shapely
@@ -48,7 +48,7 @@ def measure_plan(
 
 
 def measure_head_room(plan: FloorPlan, sensor_z_m: float) -> float:
-    """Return how far up from the floor to the ceiling the sensor was, 0 to 1.
+    """Return the sensor's height as a share of the room's, 0 to 1.
 
     NaN where no ceiling was seen, or most doors stand on the floor that was seen: it is one.
 

@@ -1,4 +1,4 @@
-"""What a drawing is worth as a whole, in one line, with the likeliest cause and the remedy."""
+"""Verdict on a plan in one line, with the likeliest cause and the remedy."""
 
 from dataclasses import dataclass
 
@@ -94,5 +94,5 @@ def judge_plan(plan: FloorPlan) -> Verdict:
 
 
 def is_note(finding: Finding) -> bool:
-    """Return whether a finding leaves a plan what it is."""
+    """Return whether a finding leaves the verdict unchanged."""
     return worth_left([finding]) == PLAN

@@ -1,1 +1,1 @@
-"""From where a second visit would settle what a plan does not know."""
+"""Planning of a second visit: questions and standpoints."""

@@ -1,4 +1,4 @@
-"""The next visit: what of a plan it is to settle, from where, and in which order."""
+"""Questions, standpoints and order of a second visit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class VisitSettings:
 
 @dataclass(frozen=True, eq=False)
 class NextVisit:
-    """What a second visit is to settle, and from where.
+    """Questions of a second visit, and its standpoints.
 
     Attributes
     ----------

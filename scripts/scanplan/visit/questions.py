@@ -1,4 +1,4 @@
-"""What a plan does not know, or not surely, and from which sides one would see it."""
+"""Unseen and doubtful elements of a plan, and the sides they are seen from."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How far and how far around a survey's sensor sees, by what its scans show."""
+"""Range and field of a survey's sensor, from its scans."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
