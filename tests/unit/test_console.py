@@ -8,7 +8,7 @@ import pytest
 from snakemake_interface_logger_plugins.common import LogEvent
 
 from scanplan.project.run.console import RunConsole
-from scanplan.project.run.terminal import Terminal
+from scanplan.project.run.terminal import Terminal, tell
 from scanplan.project.texts import CONSOLE_WIDTH
 
 
@@ -176,6 +176,17 @@ def test_why_a_run_ends_is_one_line_of_a_file_and_folded_on_a_screen():
         Terminal(stream).refuse(line)
     assert file.getvalue() == f"{line}\n"
     assert max(map(len, screen.getvalue().splitlines())) <= 59
+
+
+def test_what_is_told_of_a_run_is_folded_on_a_screen_and_one_line_in_a_file(monkeypatch):
+    text = f"short\n{' '.join(['word'] * 40)}"
+    file, screen = io.StringIO(), Screen()
+    for stream in (file, screen):
+        monkeypatch.setattr("sys.stderr", stream)
+        tell(text)
+    assert file.getvalue() == f"{text}\n"
+    assert max(map(len, screen.getvalue().splitlines())) <= CONSOLE_WIDTH
+    assert screen.getvalue().split() == text.split()
 
 
 def test_every_line_about_a_stage_fits_and_its_warnings_are_whole(file):

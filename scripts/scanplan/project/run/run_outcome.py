@@ -26,7 +26,7 @@ def describe_results(name: str) -> str:
     compared = f"{folder}/comparison.html"
     beside = f", {compared}" if Path(compared).exists() else ""
     drawn = f"{folder}/plan/plan.pdf"
-    where = f"{drawn} (also .svg, .dxf, .geojson, map.pgm and more)"
+    where = f"{drawn} (also .svg, .dxf, .geojson, map.pgm)"
     return (
         f"\n{name}\n{found}"
         f"plan     {where if Path(drawn).exists() else f'{folder}/plan, not drawn'}\n"
