@@ -100,6 +100,8 @@ def test_a_cut_line_fits_and_is_the_beginning_of_the_text(text, width):
         ("8 walls (2 to verify), 19.4 m; 13 faces", "8 walls (2 to verify), 19.4 m …"),
         ("8 walls (2 to verify, 3 not; all in a row)", "8 walls …"),
         ("nothing in it is a clause that ends before", "nothing in it is a clause that …"),
+        ("nothing in it is a clause somewhere in it", "nothing in it is a clause …"),
+        ("x" * 40, "x" * 31 + "…"),
     ],
 )
 def test_a_line_is_cut_between_clauses_and_never_within_brackets(text, cut):

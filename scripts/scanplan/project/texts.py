@@ -71,7 +71,10 @@ def cut_line(text: str, width: int) -> str:
         return text
     ends = [found.start() for found in _CLAUSE_END.finditer(text[: room - 1])]
     whole = [end for end in ends if text[:end].count("(") == text[:end].count(")")]
-    return f"{text[: whole[-1]]} …" if whole else f"{text[: room - 1]}…"
+    if whole:
+        return f"{text[: whole[-1]]} …"
+    words, space, _ = text[: room - 1].rpartition(" ")
+    return f"{words} …" if space else f"{text[: room - 1]}…"
 
 
 def find_unfit(text: str) -> str | None:
