@@ -161,7 +161,7 @@ def classify_gap(
 
 
 def _lost_share(face: FaceObservation, span_m: FloatArray) -> float:
-    """Return on what share of the width rays did not come back."""
+    """Return the share of the width with missing returns."""
     inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.lost_m]
     return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
 

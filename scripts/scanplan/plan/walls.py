@@ -117,7 +117,7 @@ class _Assembly:
         return wall
 
     def extend_through_hidden(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
-        """Let a wall go on to the wall ahead through what no ray went through or showed.
+        """Extend a wall to the next crossing wall across an unobserved gap.
 
         What stands on both sides hides it: a gap there would have let some ray pass, as in a gap of
         the wall. It goes on no farther than it is long.

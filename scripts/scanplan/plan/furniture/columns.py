@@ -67,7 +67,7 @@ def find_column_faces(
     max_width_m: float,
     unpaired_m: float,
 ) -> list[bool]:
-    """Return which walls are but one side of a column, of which the others were seen less.
+    """Return which walls are single visible sides of columns.
 
     Such is a single face as short as a column is wide, with an end at no other wall or pane, where
     what stands around it is told to be a column.

@@ -70,7 +70,7 @@ class PlanFaces(FaceTree):
         return float(self._gaps_m(face, places_m).min())
 
     def goes_on_beside(self, face: FaceInterval, places_m: FloatArray) -> bool:
-        """Return whether more than a trace lies on the line of a face on both sides of places (n,).
+        """Return whether a face's line continues beyond a trace on both sides of places (n,).
 
         What lies there begins where they end.
         """

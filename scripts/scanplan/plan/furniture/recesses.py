@@ -22,7 +22,7 @@ DEEPEST_M = math.sqrt(POCKET_M2)
 
 
 def find_holes(known: BaseGeometry) -> Iterator[Polygon]:
-    """Yield the holes of known ground no larger than furniture, by what it was grown by larger."""
+    """Yield the holes of known ground up to furniture size, dilated by one cell."""
     for part in free_space.polygon_parts(known).geoms:
         for ring in part.interiors:
             hole = overlays.buffer_shapes(Polygon(ring), CELL_M, join_style="mitre")

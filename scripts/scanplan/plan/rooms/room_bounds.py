@@ -66,7 +66,7 @@ def find_glass_walls(
 
 
 def _cut_known(pane: PlanWall, known: Sequence[PlanWall], unpaired_m: float) -> list[PlanWall]:
-    """Return what of a pane lies on none of those known that run the same way."""
+    """Return the parts of a pane that no known collinear pane covers."""
     along = [other for other in known if pane.goes_on_as(other)]
     if not along:
         return [pane]

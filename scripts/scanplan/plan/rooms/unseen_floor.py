@@ -1,4 +1,4 @@
-"""Floor of rooms that no planar scan saw: what furniture may hide stays in a room."""
+"""Unseen floor of rooms: removed, but for small areas that furniture may hide."""
 
 from collections.abc import Sequence
 from dataclasses import replace
