@@ -30,7 +30,8 @@ OF_A_RUN = ("dataset", "replace")
 """Keys that say what a run is of, and nothing of how its results are made."""
 
 _DEFAULTS = "config/config.yaml"
-_ROOT = Path(__file__).parents[3]
+SCHEMA_FILE = Path(__file__).parents[3] / "workflow/schemas/config.schema.yaml"
+"""The schema of the settings."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +188,7 @@ def end_on_faulty_settings(arguments: Sequence[str]) -> None:
     ------
     SystemExit
     """
-    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    schema = read_schema(SCHEMA_FILE)
     try:
         for path in _list_words(arguments, "--configf.*"):
             _check_file(path, schema)
