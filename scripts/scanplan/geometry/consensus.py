@@ -90,7 +90,11 @@ def find_consensus(
 
 
 def trials_needed(inlier_share: float, n_sampled: int) -> float:
-    """Return how many samples hold, with 99 % probability, at least one of inliers alone."""
+    """Return how many samples hold, with 99 % probability, at least one of inliers alone.
+
+    >>> round(trials_needed(0.5, 2), 1)
+    16.0
+    """
     of_inliers = inlier_share**n_sampled
     if of_inliers >= 1:
         return 1.0
