@@ -43,7 +43,6 @@ def export_files(
         plans of the dataset ever had. The latter is read, too, where there is one of the same
         source: what lies where something did before keeps its id. Of `export_formats.FILES` what
         is to be written.
-    name : str
     source : str
         What the dataset's results are made of, see `provenance.identify_source`.
     settings : dict

@@ -44,7 +44,6 @@ def write_report(
         known); `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
-    name : str
     settings : dict
         All settings of the dataset.
     run_times : iterable of path-like

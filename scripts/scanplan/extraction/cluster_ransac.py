@@ -90,7 +90,6 @@ def extract_by_clusters(
         The scan's points relative to its sensor, as `sensor_frame.centre_in_order` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
-    settings : ClusterRansacSettings
 
     Returns
     -------

@@ -48,7 +48,6 @@ def extract_iteratively(
         The scan's points relative to its sensor, as `sensor_frame.centre_in_order` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
-    settings : IterativeRansacSettings
 
     Returns
     -------
@@ -84,10 +83,8 @@ def find_largest_plane(
     Parameters
     ----------
     xyz_m : (n, 3) float, n >= 3
-    inlier_m : float
     trials : int
         All are made: stopping early would depend on the number of cores.
-    seed : int
 
     Returns
     -------

@@ -69,7 +69,6 @@ def extract_repeatedly(
         The scan's points relative to its sensor.
     scan : ray_set.RaySet, optional
         None in the plane; the thesis asks no ray.
-    settings : ThesisIterativeSettings
 
     Returns
     -------

@@ -72,7 +72,6 @@ def trace_cells(lines_m: npt.ArrayLike, grid: Grid) -> tuple[IntArray, IntArray]
     ----------
     lines_m : (n, 2, 2) float
         What lies outside of the grid has no cells.
-    grid : Grid
 
     Returns
     -------

@@ -57,8 +57,6 @@ def find_consensus(
         `line`, through two points of any dimension; or `plane`, through three in space.
     inlier_m : float
         Largest distance of an inlier from the line or plane.
-    max_trials : int
-    rng : numpy.random.Generator
     """
     points_m = np.asarray(points_m, float)
     n_sampled = MODELS[model]

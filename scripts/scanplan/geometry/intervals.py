@@ -35,7 +35,6 @@ def find_run_starts(begin_m: FloatArray, end_m: FloatArray, max_gap_m: float) ->
     ----------
     begin_m, end_m : (n,) float
         By begin; equal where the intervals are positions.
-    max_gap_m : float
 
     Examples
     --------

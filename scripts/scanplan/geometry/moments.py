@@ -26,7 +26,6 @@ def group_moments(points: FloatArray, group: IntArray, n_groups: int) -> FloatAr
     points : (n, d) float
     group : (n,) int
         Of each point, below `n_groups`.
-    n_groups : int
 
     Returns
     -------

@@ -113,7 +113,6 @@ def buffer_shapes(
 
     Parameters
     ----------
-    shapes : geometry or array
     by : float or (n,) float
         In the units of the coordinates; negative for what is left within areas.
     quad_segs : int

@@ -63,7 +63,6 @@ def thin_randomly(
         Of all scans together.
     n_scans : int, >= 1
         How many there are.
-    seed : int
 
     Returns
     -------
@@ -91,12 +90,10 @@ def choose_places(
     Parameters
     ----------
     xyz_m : (n, 3) float64, n >= 1
-    planar : bool
     radius_m : float
         Edge of a cube.
     most_places : int
         A random choice of as many is made where there are more.
-    seed : int
 
     Returns
     -------
@@ -134,7 +131,6 @@ def measure_scatter(
     centres_m : (m, 3) float64
     planar : bool
         Whether surfaces are lines in x, y.
-    radius_m : float
 
     Returns
     -------

@@ -153,7 +153,6 @@ def interpolate_poses(
     quat_xyzw : (n, 4) float
         Unit quaternions; the sign of each is free.
     query_ns : (m,) int64
-    max_gap_s : float
 
     Returns
     -------

@@ -68,7 +68,6 @@ def name_results(place: str, text: str) -> str:
     ----------
     place : str
         Where the text is from, for the message.
-    text : str
     """
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", text)
     texts.check_path(name)
@@ -91,7 +90,6 @@ def check_results_name(place: str, name: str) -> None:
     ----------
     place : str
         What bears the name, for the message.
-    name : str
 
     Raises
     ------

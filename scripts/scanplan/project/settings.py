@@ -82,7 +82,6 @@ def settings_of_dataset(
         See `read_defaults`.
     layers : sequence of Layer
         The dataset's own settings and the command line's; the later win.
-    schema : dict
 
     Returns
     -------
@@ -146,7 +145,6 @@ def find_origin(layers: Sequence[Layer], *keys: str) -> str | None:
 
     Parameters
     ----------
-    layers : sequence of Layer
     *keys : str
         Joined by dots: `plan.method`, or a section, `plan`.
     """

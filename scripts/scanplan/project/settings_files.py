@@ -80,7 +80,6 @@ def fill_manual(manual: str, schema: Schema) -> str:
     manual : str
         Where it says `<!-- settings poses -->`, a table of that section stands up to
         `<!-- end -->`; `general` is for what is in no section.
-    schema : dict
     """
 
     def write(found: re.Match[str]) -> str:

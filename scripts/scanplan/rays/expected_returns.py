@@ -120,14 +120,12 @@ def count_sent_rays(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     face : face_rays.FaceRays
         Of these, with what is occluded within `NEAR_M`.
     low_m : float
         Where along its line the first column begins.
     count : int
         Number of columns.
-    column_m : float
     heights_m : (float, float)
         From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
 

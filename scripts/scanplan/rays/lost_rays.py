@@ -36,13 +36,10 @@ def find_lost(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     face : face_rays.FaceRays
         Of these, with what is occluded within `expected_returns.NEAR_M`.
     low_m : float
         Where along its line the first column begins.
-    n_columns : int
-    column_m : float
     edges_m : (r + 1,) float64
         Of the rows of heights; those of planar scans are infinite.
     """

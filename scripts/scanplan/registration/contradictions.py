@@ -36,7 +36,6 @@ def measure_standstill(priors: FloatArray, scan_results: Sequence[ScanResult]) -
     ----------
     priors : (n, 4, 4) float64
         World from sensor by the recorded poses, NaN without one.
-    scan_results : sequence of n sequential.ScanResult
     """
     poses = priors[np.isfinite(priors).all(axis=(1, 2))]
     n_left = sum(not r.kept for r in scan_results if r.reason not in _UNASKED)
@@ -97,12 +96,10 @@ def measure_map(
 
     Parameters
     ----------
-    survey : batches.CandidateScans
     t_ns : (n,) int64
         Stamps of the candidates.
     scan_results : sequence of sequential.ScanResult
         One per candidate.
-    optimised : multiway.OptimisedMap
     clouds : prepared_clouds.PreparedScans
         Of those that are kept.
     odometry : callable, optional

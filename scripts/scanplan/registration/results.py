@@ -72,7 +72,6 @@ def check_any_kept(results: Sequence[ScanResult], n_dropped: int, where: FilePat
 
     Parameters
     ----------
-    results : sequence of sequential.ScanResult
     n_dropped : int
         Points that were dropped on reading.
     where : path-like

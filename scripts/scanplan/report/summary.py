@@ -16,11 +16,6 @@ from scanplan.validation.verdict import judge_plan
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     """Return the lines that say what was found, how far to trust it, and of how many scans.
 
-    Parameters
-    ----------
-    plan : floorplan.FloorPlan
-    survey : SurveyFacts
-
     Returns
     -------
     str

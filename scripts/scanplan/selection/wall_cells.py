@@ -97,7 +97,6 @@ def observe_wall_cells(
         The sensor's position, map frame.
     planar : bool
         Whether all points are in one horizontal plane.
-    settings : WallCellSettings
     axes_deg : int
         How far the cells' axes are turned from the map's, counter-clockwise: the same for all scans
         of a survey, see `find_main_direction`.
@@ -158,7 +157,6 @@ def choose_axes_deg(store: MapScans, sensors_m: FloatArray, settings: WallCellSe
         All scans.
     sensors_m : (n, 3) float
         Where the sensor was at each.
-    settings : WallCellSettings
     """
     if store.planar:
         return 0

@@ -46,7 +46,6 @@ def tell_overtime(stage: str, expected_s: float, tell: Callable[[str], None]) ->
 
     Parameters
     ----------
-    stage : str
     expected_s : float
         NaN: nothing is ever told.
     tell : callable
@@ -69,8 +68,6 @@ class _Watcher:
 
     Parameters
     ----------
-    stage : str
-    expected_s : float
     thread : int
         Its identifier.
     """

@@ -78,10 +78,8 @@ def validate_by_rays(plan: FloorPlan, rays: RaySet, settings: ValidationSettings
 
     Parameters
     ----------
-    plan : FloorPlan
     rays : RaySet
         Of scans that the plan was not made of; none at all are an answer, too.
-    settings : ValidationSettings
     """
     surfaces = list_surfaces(plan, settings.span_m, planar=rays.planar)
     tolerance_m = find_tolerance(plan.faces, settings.registration_sigma_m)
@@ -125,7 +123,6 @@ def find_tolerance(faces: Columns, registration_sigma_m: float) -> float:
     ----------
     faces : dict of str to (n,) array
         Columns of `schemas.FACES`.
-    registration_sigma_m : float
     """
     seen = np.isfinite(faces["rmse_m"])
     noise_m = 0.0

@@ -101,7 +101,6 @@ def make_lidar(
         Turns a second.
     sweep : bool
         Whether the columns fire one after the other; otherwise all at the stamp.
-    min_range_m, max_range_m : float
     firing_order : sequence of int, optional
         The beams of a column in the order of their points; ascending by default.
 
@@ -139,7 +138,6 @@ def make_laser(
 
     Parameters
     ----------
-    n_beams : int
     field_deg : float
         From the first to the last beam; 360 for a whole turn, whose last beam is followed by the
         first.

@@ -97,7 +97,6 @@ class RunConsole(logging.Handler):
 
     Parameters
     ----------
-    terminal : Terminal
     datasets : iterable of str
         Names, for the width of their column.
     """
@@ -117,7 +116,6 @@ class RunConsole(logging.Handler):
 
         Parameters
         ----------
-        logger : logging.Logger
         when_idle : callable
             Called where there is nothing to be done.
         """

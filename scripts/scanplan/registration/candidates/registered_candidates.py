@@ -77,7 +77,6 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
 
     Parameters
     ----------
-    poses : path-like
     planar : bool
         Whether the sensor measures in one plane only.
     """
@@ -132,7 +131,6 @@ def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> Dama
         Of the whole survey.
     reading : dict
         Keywords of `survey.open_survey`.
-    begin : int
     """
     return DamagedClouds(n_candidates, reading.get("max_damaged_share", 0.0), begin)
 
@@ -164,7 +162,6 @@ def register_recorded(
         As `workers.open_pool` gives it.
     reading : dict
         Keywords of `survey.open_survey`.
-    settings : registration_settings.RegistrationSettings
     moved : path-like, optional
         motion.parquet: how the sensor moved. Without it scans are not deskewed.
     chunk : str, optional
