@@ -94,5 +94,5 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
-            version=f"scanplan, code {code_files.digest_code()}",
+            version=code_files.state_version(),
         )

@@ -73,7 +73,7 @@ def write_report(
             for storey, dataset in storeys
         ],
         corrections=_read_entries(files["corrections"]),
-        version=f"Made by scanplan, code {code_files.digest_code()}.",
+        version=f"Made by {code_files.state_version()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
     text = report_page(sources, plan, survey, points, run)

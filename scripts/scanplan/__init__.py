@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     )
     from scanplan.arrays.plan_files import write_plan
 
+__version__ = "0.1.0"
+"""The release; CITATION.cff and CHANGELOG.md say the same."""
+
 __all__ = ["ArrayPlan", "make_plan", "points_from_ranges", "register_scans", "write_plan"]
 
 
