@@ -12,7 +12,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _BOMB = "k0: &k0 {a: 1}\n" + "".join(
     f"k{i}: &k{i}\n  <<: [{', '.join([f'*k{i - 1}'] * 9)}]\n" for i in range(1, 10)
 )
-_EXPORT = "advanced: {plan: {export: {%s}}}"
+_EXPORT = "plan: {export: {%s}}"
 _TEXTS = {
     "unknown section": "posess: {keep_every: 3}",
     "unknown key": "poses: {keep_evry: 3}",
@@ -71,7 +71,7 @@ _TEXTS = {
     "+ seeds by the thousand": f"thesis: {{seeds: {[*range(1000)]}}}",
     "+ seed below nothing": "simulate: {seed: -1}",
     "+ octal": "poses: {keep_every: 010}",
-    "+ octal below zero": "advanced: {plan: {export: {site: {north_m: -017}}}}",
+    "+ octal below zero": "plan: {export: {site: {north_m: -017}}}",
     "+ storey of nothing to see": _EXPORT % 'storey: "\\u200b"',
     "+ organisation read backwards": _EXPORT % 'organisation: "a\\u202eb"',
     "+ system of a number": _EXPORT % "site: {crs: 25832}",

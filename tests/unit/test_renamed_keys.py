@@ -53,7 +53,12 @@ def test_every_old_key_is_explained_by_a_name_that_is_known(old_keys):
     [
         ("walls.cluster_ransac.min_height_m", "is now walls.min_height_m"),
         ("walls.iterative_ransac.door_height_m", "is now building.door_height_m"),
-        ("registration.graph.loop_radius_m", "is now advanced.registration.graph.loop_radius_m"),
+        ("registration.voxel_m", "is now advanced.registration.voxel_m"),
+        ("advanced.plan.export.site.crs", "is now plan.export.site.crs"),
+        (
+            "advanced.registration.graph.loop_radius_m",
+            "is gone (no survey needed another value than its default)",
+        ),
         ("hulls.seed", "is now seed"),
         ("plan.right_angles.sigmas", "is gone (faces are drawn as turned as their points are)"),
     ],
@@ -67,7 +72,8 @@ def test_several_old_keys_are_told_at_once_but_no_endless_list(project_root):
     values = {key: section for key, section in values.items() if isinstance(section, dict)}
     with pytest.raises(StageError) as caught:
         settings_of_dataset(SETTINGS, [Layer("a.yaml", values)], SCHEMA)
-    assert str(caught.value).count(" is now ") == 8 and " more; " in str(caught.value)
+    said = str(caught.value)
+    assert said.count(" is now ") + said.count(" is gone ") == 8 and " more; " in said
 
 
 def test_unknown_keys_and_known_ones_are_not_explained():

@@ -37,7 +37,7 @@ class ClusterRansacSettings(SegmentLimits):
     reach_deg: float
     max_tilt_deg: float
     bandwidth_m: float
-    trials: int
+    trials: int = 64  # half of a cluster being wall, all fail once in 1e8 times
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class ThesisIterativeSettings(ExtractorSettings):
 
     max_tilt_deg: float
     model: str
-    max_trials: int
+    max_trials: int = 50  # the default of the thesis's library
 
 
 @dataclass(frozen=True, kw_only=True)

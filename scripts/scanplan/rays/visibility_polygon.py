@@ -34,8 +34,8 @@ class VisibilitySettings:
     """
 
     range_m: float
-    sector_deg: float
-    min_height_m: float
+    sector_deg: float = 2.0  # at least twice the angle between beams
+    min_height_m: float = 0.3  # what is lower is looked over
     max_height_m: float
 
 

@@ -28,7 +28,7 @@ LOWERED_BY = {
     "validate_plan": "a lower advanced.plan.validation.max_scans",
     "plan_next_visit": "a higher advanced.plan.next_visit.spacing_m",
     "measure_crispness": "a lower advanced.crispness.most_points",
-    "export_cloud": "a higher advanced.plan.export.cloud.cell_m",
+    "export_cloud": "a higher plan.export.cloud.cell_m",
 }
 """Stage to the change of a setting that makes it shorter."""
 
