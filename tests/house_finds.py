@@ -62,8 +62,9 @@ def read_texts(modules: list[Module]) -> dict[str, str]:
 
 def list_keys(checkout: Path) -> list[str]:
     """Return all keys of settings, those that have keys of their own left out, joined by dots."""
-    schema = checkout / "workflow/schemas/config.schema.yaml"
-    return list(_keys_below(yaml.safe_load(schema.read_text(encoding="utf-8")), ""))
+    schemas = sorted(checkout.glob("workflow/*/config.schema.yaml"))
+    parsed = [yaml.safe_load(schema.read_text(encoding="utf-8")) for schema in schemas]
+    return [key for schema in parsed for key in _keys_below(schema, "")]
 
 
 def _keys_below(node: dict[str, Any], prefix: str) -> Iterator[str]:

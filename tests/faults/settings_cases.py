@@ -4,7 +4,13 @@ from functools import partial
 from pathlib import Path
 
 from faults.judging import Case
-from scanplan.project.settings import Layer, read_defaults, settings_of_dataset
+from scanplan.project.settings import (
+    LABORATORY_FILE,
+    SCHEMA_FILE,
+    Layer,
+    read_defaults,
+    settings_of_dataset,
+)
 from scanplan.project.settings_schema import read_schema
 from scanplan.project.yaml_file import read_yaml
 
@@ -97,7 +103,7 @@ _TEXTS = {
 
 
 def list_settings_cases(folder):
-    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    schema = read_schema(SCHEMA_FILE, LABORATORY_FILE)
     cases = []
     for number, (name, text) in enumerate(_TEXTS.items()):
         path = Path(folder, f"settings_{number}.yaml")

@@ -5,9 +5,9 @@ import pytest
 from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.errors import StageError
 from scanplan.project import renamed_keys
-from scanplan.project.settings import Layer, merge_settings, settings_of_dataset
-from scanplan.project.settings_check import iterate_leaves
-from scanplan.project.settings_schema import iterate_keys
+from scanplan.project.settings import SCHEMA_FILE, Layer, merge_settings, settings_of_dataset
+from scanplan.project.settings_check import check_settings, iterate_leaves
+from scanplan.project.settings_schema import iterate_keys, read_schema
 from scanplan.project.yaml_file import read_yaml
 
 KNOWN = {key for key, _ in iterate_keys(SCHEMA)}
@@ -65,6 +65,15 @@ def test_every_old_key_is_explained_by_a_name_that_is_known(old_keys):
 )
 def test_one_line_says_the_new_name(old, told):
     assert renamed_keys.explain_old_keys([old], KNOWN) == f"old keys: {old} {told}"
+
+
+def test_the_laboratorys_keys_are_none_of_the_product():
+    product = read_schema(SCHEMA_FILE)
+    with pytest.raises(StageError, match=r"thesis\.seeds is gone \(.*workflow/thesis/Snakefile"):
+        check_settings({"thesis": {"seeds": [1]}}, product, "a.yaml")
+    assert {key for key in KNOWN if key.startswith("thesis.")} == KNOWN - {
+        key for key, _ in iterate_keys(product)
+    }
 
 
 def test_several_old_keys_are_told_at_once_but_no_endless_list(project_root):

@@ -69,6 +69,7 @@ DROPPED = {
             "stub_length_m",
         )
     },
+    "thesis": "the laboratory's workflow alone knows it: workflow/thesis/Snakefile",
     "plan.right_angles": "faces are drawn as turned as their points are",
     "plan.pair.max_angle_deg": "it is always 5 degrees",
 }

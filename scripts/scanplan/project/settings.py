@@ -32,6 +32,8 @@ OF_A_RUN = ("dataset", "replace")
 _DEFAULTS = "config/config.yaml"
 SCHEMA_FILE = Path(__file__).parents[3] / "workflow/schemas/config.schema.yaml"
 """The schema of the settings."""
+LABORATORY_FILE = SCHEMA_FILE.parents[1] / "thesis/config.schema.yaml"
+"""That of what the laboratory has beside them."""
 
 
 @dataclass(frozen=True)
@@ -186,7 +188,8 @@ def end_on_faulty_settings(arguments: Sequence[str]) -> None:
     ------
     SystemExit
     """
-    schema = read_schema(SCHEMA_FILE)
+    # which workflow will be run is not known yet
+    schema = read_schema(SCHEMA_FILE, LABORATORY_FILE)
     try:
         for path in _list_words(arguments, "--configf.*"):
             _check_file(path, schema)
