@@ -217,12 +217,7 @@ def is_of_stations(files: Iterable[str]) -> bool:
 
 def is_las_drive(files: Iterable[str]) -> bool:
     """Return whether the files are points in the map with a trajectory."""
-    return any(map(is_trajectory, files))
-
-
-def is_trajectory(file: str) -> bool:
-    """Return whether a file of a dataset says where the sensor of a .las was."""
-    return dataset_entries.is_trajectory(Path(file))
+    return any(dataset_entries.is_trajectory(Path(file)) for file in files)
 
 
 def is_grid_map(files: Iterable[str]) -> bool:

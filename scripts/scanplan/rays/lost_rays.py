@@ -54,7 +54,7 @@ def find_lost(
         scan = face.views.scan[sent.view[view]]
         for number, heights_m in enumerate(itertools.pairwise(edges)):
             # of a row that the beams hardly reach as little is lost
-            of_row = expected_returns.expect_returns(rays, face, *columns, heights_m)
+            _, of_row = expected_returns.expect_returns(rays, face, *columns, heights_m)
             own = np.minimum(of_row[view, column], sent.expected[view, column])
             row = np.full(len(view), first + number)
             found.append(LostRays(scan, column, row, own * of_band))

@@ -14,7 +14,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import pose_kind, trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import batches, mapping, results
+from scanplan.registration import batches, mapping
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.registration_settings import (
@@ -23,7 +23,7 @@ from scanplan.registration.registration_settings import (
 )
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
 
@@ -82,7 +82,7 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
     """
     columns = tables.read_table(poses, schemas.POSES)
     is_odometry = pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
-    priors = results.pose_matrices(columns)
+    priors = pose_columns.pose_matrices(columns)
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
 
 
