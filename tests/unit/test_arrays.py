@@ -98,6 +98,8 @@ def test_registered_scans_are_not_registered_again(made):
     scans, poses, plan = made
     again = scanplan.make_plan(scans, scanplan.register_scans(scans, poses))
     assert again.walls["x0_m"].tolist() == plan.walls["x0_m"].tolist()
+    with pytest.raises(ValueError, match=r"poses: has scan 9, .* 3 given"):
+        scanplan.make_plan(scans[:3], plan.scans)
 
 
 def test_exact_poses_stay_as_they_are():
@@ -115,6 +117,8 @@ def test_exact_poses_stay_as_they_are():
         ({"scans": [np.zeros((5, 3)), np.zeros(5), np.zeros((5, 3))]}, r"scans\[1\].*\(5,\)"),
         ({"t_ns": [1, 3, 2]}, "t_ns"),
         ({"t_ns": [1, 2]}, "t_ns"),
+        ({"t_ns": [1.0, 2.5, 3.0]}, "t_ns: .*whole"),
+        ({"scans": [[[1.0, 2.0], [3.0]]] * 3}, r"scans\[0\]"),
         ({"settings": {"plan": {"method": "hull"}}}, r"plan\.method: .*hull.*wall_length"),
     ],
 )

@@ -42,6 +42,9 @@ class PlacedScans:
     """Registered scans in the map frame, read as those of a `tables.ScanStore` are."""
 
     def __init__(self, given: GivenScans, known: RegisteredScans) -> None:
+        if known.scan_ids.max(initial=-1) >= len(given.scans):
+            last = known.scan_ids.max()
+            raise ValueError(f"poses: has scan {last}, must be of the {len(given.scans)} given")
         self.settings = given.settings
         self.planar = given.planar
         self.known = known
@@ -121,14 +124,18 @@ def read_poses(poses: npt.ArrayLike, count: int) -> FloatArray:
 
 
 def _read_points(number: int, scan: npt.ArrayLike) -> FloatArray:
-    xyz_m = np.asarray(scan, np.float32)
+    try:
+        xyz_m = np.asarray(scan, np.float32)
+    except ValueError as error:
+        raise ValueError(f"scans[{number}]: is no array of numbers: {error}") from None
     if xyz_m.ndim != 2 or xyz_m.shape[1] not in (2, 3):
         raise ValueError(f"scans[{number}]: of shape {xyz_m.shape}, must be (n, 3) or (n, 2)")
     return np.pad(xyz_m, ((0, 0), (0, 3 - xyz_m.shape[1])))
 
 
 def _read_stamps(t_ns: npt.ArrayLike | None, count: int) -> IntArray:
-    stamps = np.arange(count) * _STEP_NS if t_ns is None else np.asarray(t_ns, np.int64)
-    if stamps.shape != (count,) or (np.diff(stamps) <= 0).any():
-        raise ValueError(f"t_ns: must be {count} increasing stamps, one a scan")
-    return stamps
+    stamps = np.arange(count) * _STEP_NS if t_ns is None else np.asarray(t_ns)
+    is_whole = stamps.dtype.kind in "iu"
+    if not is_whole or stamps.shape != (count,) or (np.diff(stamps) <= 0).any():
+        raise ValueError(f"t_ns: must be {count} increasing whole nanoseconds, one a scan")
+    return stamps.astype(np.int64)
