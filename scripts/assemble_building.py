@@ -128,5 +128,5 @@ if __name__ == "__main__":
             name=snakemake.params.name,
             storeys=snakemake.params.storeys,
             settings=snakemake.params.settings,
-            version=f"scanplan, code {code_files.digest_code()}",
+            version=code_files.state_version(),
         )

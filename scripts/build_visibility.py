@@ -29,7 +29,6 @@ def build_visibility(
         visibility.parquet, to write.
     settings : dict
         Keywords of `visibility_polygon.VisibilitySettings`.
-    threads : int
     chunk : str, optional
         Which scans, see `per_scan.read_chunk_ids`; all by default.
     """

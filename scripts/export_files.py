@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
+import scanplan
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
@@ -43,7 +44,6 @@ def export_files(
         plans of the dataset ever had. The latter is read, too, where there is one of the same
         source: what lies where something did before keeps its id. Of `export_formats.FILES` what
         is to be written.
-    name : str
     source : str
         What the dataset's results are made of, see `provenance.identify_source`.
     settings : dict
@@ -161,6 +161,6 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             source=snakemake.params.source,
             settings=snakemake.params.settings,
-            version=snakemake.params.code,
+            version=f"{scanplan.__version__}, code {snakemake.params.code}",
             unwanted=snakemake.params.unwanted,
         )

@@ -34,7 +34,6 @@ def export_plan(
         plan/; the file of `free` states the heights of floor and ceiling.
     outputs : dict of str to path-like
         `geojson`, `dxf`, `svg`, `pdf`, `png`, `pgm` and `yaml`, to write.
-    name : str
     settings : dict
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
         of the map's cells; `turn`, `project` and `storey` of the sheet, see
@@ -95,5 +94,5 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
-            version=f"scanplan, code {code_files.digest_code()}",
+            version=code_files.state_version(),
         )

@@ -14,9 +14,7 @@ def measure_crispness(
     poses: FilePath,
     output: FilePath,
     *,
-    radius_m: float,
     most_points: int,
-    most_places: int,
     seed: int,
 ) -> None:
     """Write how thick the map of the kept scans is.
@@ -27,9 +25,8 @@ def measure_crispness(
         scans.parquet, registration.parquet and poses.parquet.
     output : path-like
         crispness.parquet, to write.
-    radius_m, most_points, most_places, seed
-        See `plane_scatter.measure_scatter`, `plane_scatter.thin_randomly` and
-        `plane_scatter.choose_places`.
+    most_points, seed
+        See `plane_scatter.thin_randomly`.
     """
     store = tables.ScanStore(scans)
     kept = registered_scans.read_registered_scans(registration)
@@ -49,8 +46,6 @@ def measure_crispness(
             points_m,
             scan_ids,
             planar=store.planar,
-            radius_m=radius_m,
-            most_places=most_places,
             seed=seed,
         )
         for name, points_m in maps.items()

@@ -29,7 +29,6 @@ def observe_walls(
         observations.parquet, to write.
     settings : dict
         Keywords of `wall_cells.WallCellSettings`.
-    threads : int
     chunk : str, optional
         Which scans, see `per_scan.read_chunk_ids`; all by default.
     """

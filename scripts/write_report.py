@@ -44,7 +44,6 @@ def write_report(
         known); `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
-    name : str
     settings : dict
         All settings of the dataset.
     run_times : iterable of path-like
@@ -74,7 +73,7 @@ def write_report(
             for storey, dataset in storeys
         ],
         corrections=_read_entries(files["corrections"]),
-        version=f"Made by scanplan, code {code_files.digest_code()}.",
+        version=f"Made by {code_files.state_version()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
     text = report_page(sources, plan, survey, points, run)

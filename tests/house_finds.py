@@ -1,6 +1,7 @@
 """What the house is counted by: modules, constants, keys and functions of a checkout's text."""
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,6 +24,9 @@ PACKAGES = (PACKAGE, "thesis")
 MAX_COLUMNS = 100  # what ruff wraps at
 _MODEL = Path(PACKAGE, "plan/model")
 """What says in densities how likely a plan is: a number there is a prior."""
+_PARAMETERS = re.compile(r"^Parameters\n-+\n(.*?)(?=\n\n\w+\n---|\Z)", re.DOTALL | re.MULTILINE)
+_SILENT = re.compile(r"^(\S.*) : [^\n(<>{,]*$(?!\n )", re.MULTILINE)
+"""A parameter with a class alone, which its annotation says: no shape, range or meaning."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +62,9 @@ def read_texts(modules: list[Module]) -> dict[str, str]:
 
 def list_keys(checkout: Path) -> list[str]:
     """Return all keys of settings, those that have keys of their own left out, joined by dots."""
-    schema = checkout / "workflow/schemas/config.schema.yaml"
-    return list(_keys_below(yaml.safe_load(schema.read_text(encoding="utf-8")), ""))
+    schemas = sorted(checkout.glob("workflow/*/config.schema.yaml"))
+    parsed = [yaml.safe_load(schema.read_text(encoding="utf-8")) for schema in schemas]
+    return [key for schema in parsed for key in _keys_below(schema, "")]
 
 
 def _keys_below(node: dict[str, Any], prefix: str) -> Iterator[str]:
@@ -256,4 +261,16 @@ def find_unannotated(modules: list[Module]) -> list[str]:
         for module in modules
         for node in find_public_functions(module)
         if not is_annotated(node)
+    ]
+
+
+def find_silent_parameters(modules: list[Module]) -> list[str]:
+    """Return `file:line names` of parameters of which docstrings say no more than annotations."""
+    return [
+        f"{module.path}:{node.lineno} {names}"
+        for module in modules
+        for node in ast.walk(module.tree)
+        if isinstance(node, Function | ast.ClassDef)
+        for listed in _PARAMETERS.findall(ast.get_docstring(node) or "")
+        for names in _SILENT.findall(listed)
     ]

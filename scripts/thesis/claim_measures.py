@@ -142,7 +142,6 @@ def growth_exponent(times: pd.DataFrame, task: str, of: str = "seconds") -> floa
     ----------
     times : pandas.DataFrame
         `thesis_schemas.TIMES`.
-    task : str
     of : str
         The column that grows.
     """

@@ -29,7 +29,6 @@ def cluster_growth_columns(
         scans.parquet.
     n_clusters : sequence of int
         The numbers of clusters to compare, in any order.
-    threads : int
     **sampling
         See `hulls.make_cluster_hulls`.
 
@@ -73,9 +72,7 @@ def stray_area_columns(scan_id: int, xyz_m: Array, *, seed: int, **sampling: Any
 
     Parameters
     ----------
-    scan_id : int
     xyz_m : (n, 2) or (n, 3) float
-    seed : int
     **sampling
         See `hulls.make_cluster_hulls`.
 
@@ -103,9 +100,7 @@ def seen_polygons(faces: TrueFaces, places_m: FloatArray, *, max_range_m: float)
 
     Parameters
     ----------
-    faces : truth_file.TrueFaces
     places_m : (n, 2) float
-    max_range_m : float
 
     Returns
     -------

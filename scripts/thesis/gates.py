@@ -78,11 +78,8 @@ def pass_gates(
 
     Parameters
     ----------
-    gates : sequence of Gate
     candidates : iterable of (constraints.PlacedScan, (4, 4) float64)
         As `place_candidates` yields them, at the localiser's poses.
-    preset : registration_settings.SequentialSettings
-    planar : bool
 
     Returns
     -------

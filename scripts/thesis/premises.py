@@ -31,7 +31,6 @@ def submodularity_ratios(
 
     Parameters
     ----------
-    truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
     n_added, seed : int
@@ -58,10 +57,8 @@ def draw_additions(n_scans: int, *, n_added: int, seed: int) -> Iterator[tuple[I
 
     Parameters
     ----------
-    n_scans : int
     n_added : int
         So many scans are added to as many others, and so often; fewer of a small survey.
-    seed : int
 
     Yields
     ------
@@ -80,7 +77,6 @@ def measure_utilities(truth: VisibleTruth, findings: Findings, rows: Iterable[in
 
     Parameters
     ----------
-    truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
     rows : iterable of int
@@ -118,7 +114,6 @@ def share_on_one_wall(
 
     Parameters
     ----------
-    steps : steps_figure.WallSteps
     sensor_xy_m : (2,) float
         Where the sensor truly was.
     faces_m : (n, 2, 2) float

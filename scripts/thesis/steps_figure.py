@@ -44,8 +44,6 @@ def find_steps(xyz_m: FloatArray, scan_id: int, settings: ClusterRansacSettings)
     ----------
     xyz_m : (n, 3) float
         Relative to the sensor.
-    scan_id : int
-    settings : ClusterRansacSettings
 
     Returns
     -------
@@ -81,7 +79,6 @@ def draw_steps_figure(steps: WallSteps, segments_m: FloatArray) -> Figure:
 
     Parameters
     ----------
-    steps : WallSteps
     segments_m : (s, 2, 2) float
         The wall segments of the scan as the workflow keeps them, relative to the sensor.
 

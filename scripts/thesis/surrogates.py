@@ -40,7 +40,6 @@ def measure_draws(
     ----------
     scans : survey_scans.SurveyScans
         With the tables `observations`, `visibility` and `hulls`.
-    truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
     n_added, seed : int

@@ -56,8 +56,6 @@ def time_extractor(
     ----------
     task : str
         Its name in the table.
-    method : extractors.Extractor
-    store : tables.ScanStore
     scan_ids : (n,) int
     settings : dict
         Those of the method among them.
@@ -166,7 +164,6 @@ def time_merging(walls: Columns, settings: MergeSettings) -> Iterator[TimedRow]:
     ----------
     walls : dict of str to (n,) array
         The columns of `schemas.WALLS`.
-    settings : merging.MergeSettings
 
     Yields
     ------
@@ -194,7 +191,6 @@ def time_clusters(
     ----------
     task : str
         Its name in the table.
-    store : tables.ScanStore
     scan_ids : (n,) int
     numbers : iterable of int
         Of clusters.

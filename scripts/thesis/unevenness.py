@@ -87,7 +87,6 @@ def unevenness_columns(
         Of the further times that a scan of a crowd was taken, by row; as many as the most repeats
         less one.
     crowd_rows : sequence of (k,) int
-    n_selected : int
 
     Returns
     -------

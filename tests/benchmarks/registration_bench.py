@@ -16,8 +16,7 @@ from scanplan.lab.evaluation import pose_errors, truth_file
 from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import results
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 from scanplan.types import Columns, Settings
 
 N_LITERAL = 40  # candidates: each takes the literal algorithm a second or two
@@ -110,7 +109,7 @@ def _literal(folder: Path, bag: Path, settings: Settings) -> Callable[[], object
     names = ("min_prior_fitness", "min_refined_fitness")
     limits = {name: settings["registration"][name] for name in names}
     distance_m = settings["registration"]["fitness_distance_m"]
-    poses = results.pose_matrices(candidates)[some]
+    poses = pose_columns.pose_matrices(candidates)[some]
     return lambda: literal.register(scans, poses, keep_every=1, distance_m=distance_m, **limits)
 
 
@@ -129,7 +128,7 @@ def _pose_accuracy(name: str, columns: Columns, registered: Columns, folder: Pat
     file = folder / "truth_poses.tum"
     true_poses = truth_file.read_true_poses(file)
     truth = truth_file.interpolate_true_poses(true_poses, registered["t_ns"][kept], file)
-    poses = results.pose_matrices(columns)[kept]
+    poses = pose_columns.pose_matrices(columns)[kept]
     aligned = pose_errors.fit_alignment(poses[:, :3, 3], truth[:, :3, 3]) @ poses
     distance_m, angle_deg = (sorted(error) for error in pose_errors.pose_errors(aligned, truth))
     middle = len(poses) // 2

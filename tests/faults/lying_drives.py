@@ -9,8 +9,7 @@ import numpy as np
 
 from faults import drives, judging, lies, making, remedies
 from scanplan.errors import StageError
-from scanplan.registration import results
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 
 GROUP = "drives with one lie"
 SENSORS = {
@@ -124,7 +123,7 @@ def _names_cause(name, said):
 def _read_places(place):
     columns = tables.read_table(place / "registration.parquet", schemas.REGISTRATION)
     kept = columns["kept"]
-    poses = results.pose_matrices(columns)
+    poses = pose_columns.pose_matrices(columns)
     return dict(zip(columns["t_ns"][kept].tolist(), poses[kept, :3, 3], strict=True))
 
 

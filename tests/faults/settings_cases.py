@@ -4,7 +4,13 @@ from functools import partial
 from pathlib import Path
 
 from faults.judging import Case
-from scanplan.project.settings import Layer, read_defaults, settings_of_dataset
+from scanplan.project.settings import (
+    LABORATORY_FILE,
+    SCHEMA_FILE,
+    Layer,
+    read_defaults,
+    settings_of_dataset,
+)
 from scanplan.project.settings_schema import read_schema
 from scanplan.project.yaml_file import read_yaml
 
@@ -12,7 +18,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _BOMB = "k0: &k0 {a: 1}\n" + "".join(
     f"k{i}: &k{i}\n  <<: [{', '.join([f'*k{i - 1}'] * 9)}]\n" for i in range(1, 10)
 )
-_EXPORT = "advanced: {plan: {export: {%s}}}"
+_EXPORT = "plan: {export: {%s}}"
 _TEXTS = {
     "unknown section": "posess: {keep_every: 3}",
     "unknown key": "poses: {keep_evry: 3}",
@@ -71,7 +77,7 @@ _TEXTS = {
     "+ seeds by the thousand": f"thesis: {{seeds: {[*range(1000)]}}}",
     "+ seed below nothing": "simulate: {seed: -1}",
     "+ octal": "poses: {keep_every: 010}",
-    "+ octal below zero": "advanced: {plan: {export: {site: {north_m: -017}}}}",
+    "+ octal below zero": "plan: {export: {site: {north_m: -017}}}",
     "+ storey of nothing to see": _EXPORT % 'storey: "\\u200b"',
     "+ organisation read backwards": _EXPORT % 'organisation: "a\\u202eb"',
     "+ system of a number": _EXPORT % "site: {crs: 25832}",
@@ -97,7 +103,7 @@ _TEXTS = {
 
 
 def list_settings_cases(folder):
-    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    schema = read_schema(SCHEMA_FILE, LABORATORY_FILE)
     cases = []
     for number, (name, text) in enumerate(_TEXTS.items()):
         path = Path(folder, f"settings_{number}.yaml")

@@ -11,7 +11,7 @@ from helpers.project_copy import Project
 _ROOT = Path(__file__).resolve().parents[2]
 _DRAWN = ("plan/plan.pdf", "figures/walls.svg")
 _HOSTILE_RC = "savefig.bbox: tight\nfont.size: 30\naxes.facecolor: red\nsavefig.dpi: 50\n"
-_EXPORT = "advanced={plan: {export: {author: %s}}}"
+_EXPORT = "plan={export: {author: %s}}"
 _STOREYS = """\
 storeys:
 - {dataset: d, name: "{dataset} {x} \\ud83c\\udfe0", elevation_m: 0}

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from scanplan.project.settings import LABORATORY_FILE, SCHEMA_FILE
 from scanplan.project.settings_schema import default_settings, read_schema
 
 ROOT = Path(__file__).resolve().parents[2]
-SCHEMA = read_schema(ROOT / "workflow/schemas/config.schema.yaml")
+SCHEMA = read_schema(SCHEMA_FILE, LABORATORY_FILE)
 SETTINGS = default_settings(SCHEMA)

@@ -15,8 +15,7 @@ from scanplan.lab.evaluation import pose_errors, truth_file
 from scanplan.lab.simulation import survey_bag
 from scanplan.project import stage_settings
 from scanplan.project.settings import merge_settings
-from scanplan.registration import results
-from scanplan.store import doubts, schemas, tables
+from scanplan.store import doubts, pose_columns, schemas, tables
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
 
 ODOMETRY: Settings = {"scale_share": 0.01, "drift_deg_per_m": 0.05}
@@ -115,8 +114,8 @@ def register_drive(recordings: Sequence[str], folder: Path, **settings: Settings
     columns = tables.read_table(registered, schemas.REGISTRATION)
     return Placed(
         columns["t_ns"],
-        results.pose_matrices(columns),
-        results.pose_matrices(tables.read_table(file["poses"], schemas.POSES)),
+        pose_columns.pose_matrices(columns),
+        pose_columns.pose_matrices(tables.read_table(file["poses"], schemas.POSES)),
         columns["kept"],
         doubts.read_doubts(registered, schemas.REGISTRATION).contradictions,
     )

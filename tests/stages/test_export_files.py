@@ -111,7 +111,7 @@ def test_evo_and_gdal_read_the_way_of_the_sensor(plan, tmp_path):
 
 
 def test_the_models_time_is_that_of_the_last_scan_and_the_keys_reach_it(plan, tmp_path):
-    site = SETTINGS["advanced"]["plan"]["export"]["site"] | {"crs": "EPSG:25832", "east_m": 7.0}
+    site = SETTINGS["plan"]["export"]["site"] | {"crs": "EPSG:25832", "east_m": 7.0}
     files = exported(plan, tmp_path, ["ifc"], author="A. Surveyor", organisation="X", site=site)
     model = ifcopenshell.open(files["ifc"])
     assert model.header.file_name.author == ("A. Surveyor",)

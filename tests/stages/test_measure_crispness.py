@@ -10,10 +10,9 @@ from register_scans import register_scans
 from scanplan.geometry import se3
 from scanplan.project import dataset_files, stage_settings
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import results
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 
-SETTINGS = {"radius_m": 0.2, "most_points": 100_000, "most_places": 500, "seed": 1}
+SETTINGS = {"most_points": 100_000, "seed": 1}
 
 
 def write_scans(folder, moved):
@@ -61,7 +60,7 @@ def disturbed(poses, planar, seed):
 
     Along x and y and in heading alone of a planar sensor.
     """
-    world_from_sensor = results.pose_matrices(poses)
+    world_from_sensor = pose_columns.pose_matrices(poses)
     errors = np.random.default_rng(seed).normal(size=(len(world_from_sensor), 6))
     if planar:
         errors[:, 2:5] = 0

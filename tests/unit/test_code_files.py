@@ -1,8 +1,12 @@
 """Imports are followed as Python follows them."""
 
 import ast
+import re
 from pathlib import Path
 
+import yaml
+
+import scanplan
 from scanplan.project import code_files
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
@@ -88,3 +92,16 @@ def test_the_code_of_plans_is_all_but_the_laboratorys(tmp_path, monkeypatch):
         digests.append(code_files.digest_code())
     stage, both, with_laboratory = digests
     assert stage != both and both == with_laboratory
+
+
+def test_the_release_is_the_same_wherever_it_is_stated():
+    root = SCRIPTS.parent
+    citation = yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8"))
+    _, *releases = re.findall(r"^## (\S+)", (root / "CHANGELOG.md").read_text("utf-8"), re.M)
+    assert citation["version"] == releases[0] == scanplan.__version__
+    assert code_files.state_version().startswith(f"scanplan {scanplan.__version__}, code ")
+
+
+def test_a_release_is_told_in_few_lines():
+    changes = (SCRIPTS.parent / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert all(part.count("\n") <= 40 for part in changes.split("\n## "))

@@ -5,9 +5,9 @@ import pytest
 from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.errors import StageError
 from scanplan.project import renamed_keys
-from scanplan.project.settings import Layer, merge_settings, settings_of_dataset
-from scanplan.project.settings_check import iterate_leaves
-from scanplan.project.settings_schema import iterate_keys
+from scanplan.project.settings import SCHEMA_FILE, Layer, merge_settings, settings_of_dataset
+from scanplan.project.settings_check import check_settings, iterate_leaves
+from scanplan.project.settings_schema import iterate_keys, read_schema
 from scanplan.project.yaml_file import read_yaml
 
 KNOWN = {key for key, _ in iterate_keys(SCHEMA)}
@@ -53,7 +53,12 @@ def test_every_old_key_is_explained_by_a_name_that_is_known(old_keys):
     [
         ("walls.cluster_ransac.min_height_m", "is now walls.min_height_m"),
         ("walls.iterative_ransac.door_height_m", "is now building.door_height_m"),
-        ("registration.graph.loop_radius_m", "is now advanced.registration.graph.loop_radius_m"),
+        ("registration.voxel_m", "is now advanced.registration.voxel_m"),
+        ("advanced.plan.export.site.crs", "is now plan.export.site.crs"),
+        (
+            "advanced.registration.graph.loop_radius_m",
+            "is gone (no survey needed another value than its default)",
+        ),
         ("hulls.seed", "is now seed"),
         ("plan.right_angles.sigmas", "is gone (faces are drawn as turned as their points are)"),
     ],
@@ -62,12 +67,22 @@ def test_one_line_says_the_new_name(old, told):
     assert renamed_keys.explain_old_keys([old], KNOWN) == f"old keys: {old} {told}"
 
 
+def test_the_laboratorys_keys_are_none_of_the_product():
+    product = read_schema(SCHEMA_FILE)
+    with pytest.raises(StageError, match=r"thesis\.seeds is gone \(.*workflow/thesis/Snakefile"):
+        check_settings({"thesis": {"seeds": [1]}}, product, "a.yaml")
+    assert {key for key in KNOWN if key.startswith("thesis.")} == KNOWN - {
+        key for key, _ in iterate_keys(product)
+    }
+
+
 def test_several_old_keys_are_told_at_once_but_no_endless_list(project_root):
     values = read_yaml(project_root / "tests/data/config_of_205_keys.yaml")
     values = {key: section for key, section in values.items() if isinstance(section, dict)}
     with pytest.raises(StageError) as caught:
         settings_of_dataset(SETTINGS, [Layer("a.yaml", values)], SCHEMA)
-    assert str(caught.value).count(" is now ") == 8 and " more; " in str(caught.value)
+    said = str(caught.value)
+    assert said.count(" is now ") + said.count(" is gone ") == 8 and " more; " in said
 
 
 def test_unknown_keys_and_known_ones_are_not_explained():

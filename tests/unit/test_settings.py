@@ -137,7 +137,8 @@ def test_a_dataset_that_is_none(defaults, schema, given, said):
         (
             "walls: {iterative_ransac: {door_height_m: 2.0, max_planes: 9}}",
             "old keys: walls.iterative_ransac.door_height_m is now building.door_height_m,"
-            " walls.iterative_ransac.max_planes is now advanced.walls.iterative_ransac.max_planes",
+            " walls.iterative_ransac.max_planes is gone (no survey needed another value than its"
+            " default)",
         ),
         (
             "advanced: {registration: {icp_distances_m: [0.1, 0.3]}}",
@@ -206,7 +207,7 @@ def test_text_on_the_command_line_is_what_a_file_would_give(given, read, schema)
     assert type_texts(given, schema) == read
 
 
-EXPORT = "advanced: {plan: {export: %s}}"
+EXPORT = "plan: {export: %s}"
 
 
 @pytest.mark.parametrize(
@@ -264,11 +265,11 @@ def test_every_value_has_limits(schema):
 
 
 def test_a_pair_on_the_command_line_is_one_character(schema):
-    given = {"advanced": {"plan": {"export": {"author": "\ud83c\udfe0", "storey": "\ud83c"}}}}
-    read = type_texts(given, schema)["advanced"]["plan"]["export"]
+    given = {"plan": {"export": {"author": "\ud83c\udfe0", "storey": "\ud83c"}}}
+    read = type_texts(given, schema)["plan"]["export"]
     assert read == {"author": "🏠", "storey": "\ud83c"}
     with pytest.raises(StageError, match=r"storey: has '.ud83c'; leave out"):
-        check_settings({"advanced": {"plan": {"export": read}}}, schema, COMMAND_LINE)
+        check_settings({"plan": {"export": read}}, schema, COMMAND_LINE)
 
 
 def test_text_for_a_number_is_refused(defaults, schema):

@@ -71,7 +71,10 @@ from scanplan.surroundings import is_unheard, shorten_traces
 
 if not IS_MODULE:
     keep_figures_ours(os.environ)
-SCHEMA = read_schema(f"{PROJECT}/workflow/schemas/config.schema.yaml")
+SCHEMAS = ["schemas", "thesis"] if LABORATORY else ["schemas"]
+SCHEMA = read_schema(
+    *(f"{PROJECT}/workflow/{folder}/config.schema.yaml" for folder in SCHEMAS)
+)
 METHODS = list_choices(SCHEMA, "plan", "method")
 EXTRACTORS = list_choices(SCHEMA, "plan", "extractor")
 
@@ -433,8 +436,9 @@ def source_of_results(wildcards):
 
 
 def all_settings(wildcards):
-    """All settings of the job's dataset."""
-    return DATASETS[wildcards.dataset].settings
+    """All settings of the job's dataset but the laboratory's own: a report has none of them."""
+    settings = DATASETS[wildcards.dataset].settings
+    return {key: value for key, value in settings.items() if key != "thesis"}
 
 
 # datasets and optional stages that have failed in this run, and those that cannot do without them

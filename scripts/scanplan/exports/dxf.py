@@ -44,7 +44,6 @@ def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
 
     Parameters
     ----------
-    sheet : Sheet
     unit : str
         mm or m: of the model space.
 

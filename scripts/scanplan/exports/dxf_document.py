@@ -49,7 +49,6 @@ class Scale:
     ----------
     unit : str
         mm or m.
-    page : Page
 
     Attributes
     ----------

@@ -34,7 +34,6 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     evidence : dict of str to (n,) array, optional
         The columns of `schemas.EVIDENCE`: a wall's feature lists the scans that show it, and when
         they were taken.

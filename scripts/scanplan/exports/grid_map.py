@@ -62,7 +62,6 @@ def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     resolution_m : float, > 0
         Doubled until the grid has at most 64 million cells.
     """

@@ -23,7 +23,6 @@ def format_ifc(
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     ids : dict of str to sequence of str, optional
         The GlobalIds of walls, openings and rooms; those that follow from their places alone by
         default.

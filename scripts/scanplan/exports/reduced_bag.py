@@ -27,7 +27,6 @@ def copy_taken_scans(
     ----------
     path : path-like
         See `bag_writer.open_bag_writer`.
-    survey : recorded_survey.BagSurvey
     candidates : collection of int
         The scan_ids that are decided on; no other cloud is decoded.
     is_taken : callable

@@ -38,7 +38,6 @@ def copy_selected_scans(
     ----------
     path : path-like
         See `bag_writer.open_bag_writer`.
-    survey : recorded_survey.BagSurvey
     scan_ids : (n,) int, increasing
     map_from_sensor : (n, 4, 4) float64
 
@@ -73,7 +72,6 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
 
     Parameters
     ----------
-    survey : recorded_survey.BagSurvey
     reading : dict
         What poses depend on of the survey's own settings, see `stage_settings.select_topics`.
 
@@ -101,7 +99,6 @@ def find_needed_messages(survey: BagSurvey, stamps_ns: IntArray, sweep_ns: int) 
 
     Parameters
     ----------
-    survey : recorded_survey.BagSurvey
     stamps_ns : (n,) int64
         Of the scans.
     sweep_ns : int

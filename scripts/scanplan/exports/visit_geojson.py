@@ -17,7 +17,6 @@ def format_visit(name: str, visit: NextVisit, summary: str) -> str:
     ----------
     name : str
         The dataset's.
-    visit : NextVisit
     summary : str
         In words; a member of the collection, also where there is no feature.
 

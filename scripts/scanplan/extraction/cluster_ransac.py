@@ -37,7 +37,7 @@ class ClusterRansacSettings(SegmentLimits):
     reach_deg: float
     max_tilt_deg: float
     bandwidth_m: float
-    trials: int
+    trials: int = 64  # half of a cluster being wall, all fail once in 1e8 times
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,6 @@ def extract_by_clusters(
         The scan's points relative to its sensor, as `sensor_frame.centre_in_order` returns them.
     scan : ray_set.RaySet, optional
         Its rays; None in the plane.
-    settings : ClusterRansacSettings
 
     Returns
     -------

@@ -94,14 +94,12 @@ def find_wall_segments(
 
     Parameters
     ----------
-    scan_id : int
     xyz_m : (n, 3) float
         The scan's points, map frame; their order does not matter.
     sensor_xyz_m : (3,) float
         The sensor's position, map frame.
     planar : bool
         Whether all points are in one horizontal plane.
-    extractor : Extractor
     settings : ExtractorSettings
         Of the extractor's class.
     max_rmse_m : float, > 0

@@ -25,8 +25,6 @@ def digest_recipe(extractor: str, settings: Settings, code: str) -> bytes:
 
     Parameters
     ----------
-    extractor : str
-    settings : dict
     code : str
         What names the code of the extraction.
     """
@@ -48,7 +46,6 @@ def find_unknown_segments(
 
     Parameters
     ----------
-    scan_id : int
     xyz_m : (n, 3) float
         The scan's points, map frame.
     recipe : bytes

@@ -29,7 +29,6 @@ def mean_shift(
     ----------
     xy_m : (n, 2) float
         All finite. Their order does not matter beyond rounding.
-    bandwidth_m : float
     weight : (n,) float, optional
         As how many points each counts.
 

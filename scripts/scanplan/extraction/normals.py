@@ -117,7 +117,6 @@ def estimate_outline_normals(xy_m: FloatArray, *, reach_deg: float) -> FloatArra
     ----------
     xy_m : (n, 2) float
         Points relative to the sensor.
-    reach_deg : float
 
     Returns
     -------

@@ -64,13 +64,10 @@ def find_upright_runs(
 
     Parameters
     ----------
-    scan : ray_set.RaySet
-    line : lines.Line
     where_m, height_m : (n,) float
         Along the line, and above the floor.
     n_own : int
         The first so many points make runs; the others only prolong and join them.
-    limits : SegmentLimits
     """
     if n_own == 0:
         return np.empty((0, 2))
@@ -93,8 +90,6 @@ def grow_runs(
         First and last of each run, rising.
     where_m : (n,) float
         Further positions.
-    max_gap_m : float
-    columns : LineColumns
 
     Returns
     -------

@@ -79,7 +79,6 @@ def cut_line(
         The line: normal . xy = offset, relative to the sensor.
     xyz_m : (n, 3) float
         Points on the line, relative to the sensor.
-    limits : SegmentLimits
     scan : ray_set.RaySet, optional
         Of all points of the scan; None in the plane.
     spare_xyz_m : (m, 3) float, optional
@@ -170,7 +169,6 @@ def segment_columns(
     Parameters
     ----------
     scan_ids : (n,) int, increasing
-    segments : sequence of n WallSegments
     """
     counts = [len(s) for s in segments]
     parts = [

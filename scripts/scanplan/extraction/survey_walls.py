@@ -49,7 +49,6 @@ def write_survey_walls(
         and settings, are taken from them.
     code : str
         What names that code.
-    threads : int
 
     Raises
     ------

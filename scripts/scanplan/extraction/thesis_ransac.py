@@ -34,7 +34,7 @@ class ThesisIterativeSettings(ExtractorSettings):
 
     max_tilt_deg: float
     model: str
-    max_trials: int
+    max_trials: int = 50  # the default of the thesis's library
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,6 @@ def extract_repeatedly(
         The scan's points relative to its sensor.
     scan : ray_set.RaySet, optional
         None in the plane; the thesis asks no ray.
-    settings : ThesisIterativeSettings
 
     Returns
     -------

@@ -35,7 +35,6 @@ def cut_bare_parts(
 
     Parameters
     ----------
-    ground : Polygon
     walled : shapely geometry
         Ground before walls, which outlines along walls lie in.
     visited : shapely geometry
@@ -68,12 +67,7 @@ def cut_bare_parts(
 
 
 def take_visited(ground: BaseGeometry, visited: BaseGeometry) -> list[Polygon]:
-    """Return the polygons of ground that somebody was in, or else the largest.
-
-    Parameters
-    ----------
-    ground, visited : shapely geometry
-    """
+    """Return the polygons of ground that somebody was in, or else the largest."""
     polygons = [part for part in shapely.get_parts(ground) if shapely.area(part)]
     largest = sorted(polygons, key=largest_first)
     return [polygon for polygon in largest if polygon.intersects(visited)] or largest[:1]

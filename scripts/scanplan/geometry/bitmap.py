@@ -72,7 +72,6 @@ def trace_cells(lines_m: npt.ArrayLike, grid: Grid) -> tuple[IntArray, IntArray]
     ----------
     lines_m : (n, 2, 2) float
         What lies outside of the grid has no cells.
-    grid : Grid
 
     Returns
     -------
@@ -96,7 +95,12 @@ def trace_cells(lines_m: npt.ArrayLike, grid: Grid) -> tuple[IntArray, IntArray]
 
 
 def rasterise_lines(lines_m: npt.ArrayLike, grid: Grid) -> BoolArray:
-    """Return the binary map of lines: bool of the grid's shape, true where any pass through."""
+    """Return the binary map of lines: bool of the grid's shape, true where any pass through.
+
+    >>> diagonal_m = [[[0.0, 0.0], [1.0, 1.0]]]
+    >>> rasterise_lines(diagonal_m, fit_grid(diagonal_m, 0.5)).astype(int).tolist()
+    [[1, 0], [0, 1]]
+    """
     bitmap = np.zeros(grid.shape, bool)
     bitmap.flat[trace_cells(lines_m, grid)[1]] = True
     return bitmap
@@ -129,6 +133,11 @@ def distances_to_outline(inside: BoolArray) -> FloatArray:
     ----------
     inside : (rows, columns) bool
         Some are not.
+
+    Examples
+    --------
+    >>> distances_to_outline(np.array([[False, True, True]])).tolist()
+    [[0.0, 1.0, 2.0]]
     """
     from scipy import ndimage  # 0.1 s, and most stages that fill grids do without
 

@@ -57,8 +57,6 @@ def find_consensus(
         `line`, through two points of any dimension; or `plane`, through three in space.
     inlier_m : float
         Largest distance of an inlier from the line or plane.
-    max_trials : int
-    rng : numpy.random.Generator
     """
     points_m = np.asarray(points_m, float)
     n_sampled = MODELS[model]
@@ -90,7 +88,11 @@ def find_consensus(
 
 
 def trials_needed(inlier_share: float, n_sampled: int) -> float:
-    """Return how many samples hold, with 99 % probability, at least one of inliers alone."""
+    """Return how many samples hold, with 99 % probability, at least one of inliers alone.
+
+    >>> round(trials_needed(0.5, 2), 1)
+    16.0
+    """
     of_inliers = inlier_share**n_sampled
     if of_inliers >= 1:
         return 1.0

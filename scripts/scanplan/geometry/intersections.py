@@ -67,8 +67,6 @@ def find_crossings(line: Line, others: SpanArrays, *, reach_m: float) -> Crossin
 
     Parameters
     ----------
-    line : lines.Line
-    others : SpanArrays
     reach_m : float
         A span that ends this near before the line crosses it, too.
 

@@ -15,6 +15,9 @@ def find_gaps(
     """Return the gaps (m, 2) that intervals (n, 2), n >= 1, leave between two places, in order.
 
     Without places, the gaps between the first begin and the last end.
+
+    >>> find_gaps(np.array([[1.0, 2.0], [4.0, 5.0]]), 0.0, 5.0).tolist()
+    [[0.0, 1.0], [2.0, 4.0]]
     """
     begin_m, end_m = intervals_m[np.argsort(intervals_m[:, 0], kind="stable")].T
     first_m = begin_m[0] if low_m is None else low_m
@@ -32,7 +35,11 @@ def find_run_starts(begin_m: FloatArray, end_m: FloatArray, max_gap_m: float) ->
     ----------
     begin_m, end_m : (n,) float
         By begin; equal where the intervals are positions.
-    max_gap_m : float
+
+    Examples
+    --------
+    >>> find_run_starts(np.array([0.0, 1.1, 3.0]), np.array([1.0, 2.0, 4.0]), 0.5).tolist()
+    [2]
     """
     reached_m = np.maximum.accumulate(end_m)
     return np.flatnonzero(begin_m[1:] - reached_m[:-1] > max_gap_m) + 1
@@ -45,6 +52,11 @@ def added_lengths_m(begin_m: FloatArray, end_m: FloatArray) -> FloatArray:
     ----------
     begin_m, end_m : (n,) float
         By begin.
+
+    Examples
+    --------
+    >>> added_lengths_m(np.array([0.0, 1.0]), np.array([2.0, 5.0])).tolist()
+    [2.0, 3.0]
     """
     reached_m = np.maximum.accumulate(np.concatenate([[-np.inf], end_m]))[:-1]
     return np.maximum(end_m - np.maximum(begin_m, reached_m), 0)

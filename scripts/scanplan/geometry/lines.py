@@ -17,7 +17,11 @@ from scanplan.types import Columns, FloatArray, IntArray
 
 
 def line_lengths_m(lines_m: FloatArray) -> FloatArray:
-    """Return the lengths (n,) of lines (n, 2, 2)."""
+    """Return the lengths (n,) of lines (n, 2, 2).
+
+    >>> line_lengths_m(np.array([[[0.0, 0.0], [3.0, 4.0]]])).tolist()
+    [5.0]
+    """
     return np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
 
 
@@ -176,6 +180,11 @@ def least_scatter_normal(
         The scatter (or covariance) of points about their centre, on any common scale.
     arctan2 : callable
         `math.atan2` where the last digit of `math` is wanted: it is not always that of `numpy`.
+
+    Examples
+    --------
+    >>> np.abs(least_scatter_normal(4.0, 0.0, 0.01)).round(6).tolist()  # along x
+    [0.0, 1.0]
     """
     # the direction of largest variance of a symmetric 2 x 2 matrix, in closed form
     angle_rad = arctan2(2 * xy, xx - yy) / 2

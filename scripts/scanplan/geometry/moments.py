@@ -26,11 +26,15 @@ def group_moments(points: FloatArray, group: IntArray, n_groups: int) -> FloatAr
     points : (n, d) float
     group : (n,) int
         Of each point, below `n_groups`.
-    n_groups : int
 
     Returns
     -------
     (1 + d + d (d + 1) / 2, n_groups) float64
+
+    Examples
+    --------
+    >>> group_moments(np.array([[1.0], [3.0], [5.0]]), np.array([0, 0, 1]), 2).tolist()
+    [[2.0, 1.0], [4.0, 5.0], [10.0, 25.0]]
     """
     axes = list(points.T)
     products = [axes[i] * axes[j] for i in range(len(axes)) for j in range(i, len(axes))]

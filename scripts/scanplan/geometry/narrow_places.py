@@ -141,7 +141,6 @@ def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: floa
     is_visited : (rows, columns) bool
     most_m : float
         Distances beyond this count as this: what is as wide is one basin.
-    cell_m : float
     """
     basin = np.zeros(far_m.size, np.int32)
     number = np.full(far_m.size, -1, np.int32)

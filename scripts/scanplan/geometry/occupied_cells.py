@@ -24,6 +24,11 @@ def number_occupied(key: IntArray, size: int) -> tuple[IntArray, IntArray]:
         The cells that hold points, increasing.
     of_point : (n,) int64
         Which of them each point is in.
+
+    Examples
+    --------
+    >>> [part.tolist() for part in number_occupied(np.array([7, 2, 7]), 10)]
+    [[2, 7], [1, 0, 1]]
     """
     if size > TABLE_SIZE:
         occupied, of_point = np.unique(key, return_inverse=True)

@@ -24,7 +24,11 @@ from scanplan.types import Array
 
 
 def unite_areas(areas: Shapes, grid: float | None = None) -> Answer:
-    """Return the union of all areas (n,)."""
+    """Return the union of all areas (n,).
+
+    >>> float(unite_areas([shapely.box(0, 0, 2, 1), shapely.box(1, 0, 3, 1)]).area)
+    3.0
+    """
     return _unite(areas, grid, AREA)
 
 
@@ -44,17 +48,30 @@ def unite_each(areas: Shapes, others: Shapes, grid: float | None = None) -> Answ
 
 
 def subtract_areas(areas: Shapes, others: Shapes, grid: float | None = None) -> Answer:
-    """Return what others leave of areas, each of its own."""
+    """Return what others leave of areas, each of its own.
+
+    >>> float(subtract_areas(shapely.box(0, 0, 2, 1), shapely.box(1, 0, 3, 1)).area)
+    1.0
+    """
     return steps.overlay_pairs(shapely.difference, _subtract_carefully, AREA, areas, others, grid)
 
 
 def subtract_lines(lines: Shapes, others: Shapes, grid: float | None = None) -> Answer:
-    """Return what others, areas or lines, leave of lines, each of its own."""
+    """Return what others, areas or lines, leave of lines, each of its own.
+
+    >>> line = shapely.LineString([(0, 0), (3, 0)])
+    >>> float(subtract_lines(line, shapely.box(1, -1, 2, 1)).length)
+    2.0
+    """
     return steps.overlay_pairs(shapely.difference, _subtract_carefully, LINE, lines, others, grid)
 
 
 def intersect_areas(areas: Shapes, others: Shapes, grid: float | None = None) -> Answer:
-    """Return the areas that areas have in common with others."""
+    """Return the areas that areas have in common with others.
+
+    >>> float(intersect_areas(shapely.box(0, 0, 2, 1), shapely.box(1, 0, 4, 1)).area)
+    1.0
+    """
     return steps.overlay_pairs(
         shapely.intersection, _intersect_carefully, AREA, areas, others, grid
     )
@@ -78,7 +95,12 @@ def intersect_shapes(shapes: Shapes, others: Shapes) -> Answer:
 
 
 def cross_lines(lines: Shapes, others: Shapes) -> Answer:
-    """Return the points where lines cross others."""
+    """Return the points where lines cross others.
+
+    >>> one, other = shapely.from_wkt(["LINESTRING (0 0, 2 2)", "LINESTRING (0 2, 2 0)"])
+    >>> cross_lines(one, other).wkt
+    'POINT (1 1)'
+    """
     return steps.overlay_pairs(
         shapely.intersection, _intersect_carefully, POINT, lines, others, None
     )
@@ -91,13 +113,17 @@ def buffer_shapes(
 
     Parameters
     ----------
-    shapes : geometry or array
     by : float or (n,) float
         In the units of the coordinates; negative for what is left within areas.
     quad_segs : int
         Straight pieces that a quarter of a round corner is made of.
     **style
         `cap_style` and `join_style`, as for `shapely.buffer`.
+
+    Examples
+    --------
+    >>> float(buffer_shapes(shapely.box(0, 0, 2, 1), -0.25).area)
+    0.75
     """
 
     def buffer(*geometry: Any) -> Answer:
@@ -126,12 +152,20 @@ def merge_lines(lines: Shapes) -> Answer:
 
 
 def enclose_areas(lines: Shapes) -> Array:
-    """Return the areas (n,) that lines enclose, which meet at their ends only."""
+    """Return the areas (n,) that lines enclose, which meet at their ends only.
+
+    >>> [float(area.area) for area in enclose_areas([shapely.box(0, 0, 2, 1).exterior])]
+    [2.0]
+    """
     return shapely.get_parts(steps.change_each(shapely.polygonize, ANY, lines))
 
 
 def clip_areas(areas: Shapes, low_x: float, low_y: float, high_x: float, high_y: float) -> Answer:
-    """Return what lies in a box of areas."""
+    """Return what lies in a box of areas.
+
+    >>> float(clip_areas(shapely.box(0, 0, 2, 2), 1, 1, 5, 5).area)
+    1.0
+    """
     return steps.change_each(shapely.clip_by_rect, AREA, areas, low_x, low_y, high_x, high_y)
 
 

@@ -31,7 +31,6 @@ def part_enough(
 
     Parameters
     ----------
-    ground : Polygon or MultiPolygon
     lines : sequence of (2, 2) float64
         Across it.
     visits_m : (n, 2) float64

@@ -13,7 +13,6 @@ def find_passages(line: Line, track_m: FloatArray) -> FloatArray:
 
     Parameters
     ----------
-    line : lines.Line
     track_m : (k, 2) float64
         One place after the other.
     """

@@ -20,6 +20,8 @@ from scipy.spatial import cKDTree  # pyright: ignore[reportAttributeAccessIssue]
 
 from scanplan.types import FloatArray, IntArray
 
+_RADIUS_M = 0.2  # well above what poses err, below what lies between surfaces
+_MOST_PLACES = 2000  # evenly over the map: a bound on time
 _FEWEST_POINTS = 10  # a covariance of fewer says little
 _FEWEST_SCANS = 3  # two may be off together
 _LEAST_SPREAD = 0.25  # of the radius; points all over a disc have half of it, a single ring's none
@@ -63,7 +65,6 @@ def thin_randomly(
         Of all scans together.
     n_scans : int, >= 1
         How many there are.
-    seed : int
 
     Returns
     -------
@@ -91,12 +92,10 @@ def choose_places(
     Parameters
     ----------
     xyz_m : (n, 3) float64, n >= 1
-    planar : bool
     radius_m : float
         Edge of a cube.
     most_places : int
         A random choice of as many is made where there are more.
-    seed : int
 
     Returns
     -------
@@ -134,7 +133,6 @@ def measure_scatter(
     centres_m : (m, 3) float64
     planar : bool
         Whether surfaces are lines in x, y.
-    radius_m : float
 
     Returns
     -------
@@ -161,9 +159,9 @@ def measure_map_scatter(
     scan_ids: IntArray,
     *,
     planar: bool,
-    radius_m: float,
-    most_places: int,
     seed: int,
+    radius_m: float = _RADIUS_M,
+    most_places: int = _MOST_PLACES,
 ) -> SurfaceScatter:
     """Measure the spread (`measure_scatter`) around places of a map (`choose_places`)."""
     rows = choose_places(

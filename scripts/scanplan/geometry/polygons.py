@@ -17,7 +17,11 @@ _POLYGONAL = (shapely.GeometryType.POLYGON, shapely.GeometryType.MULTIPOLYGON)
 
 
 def rectangle_sides_m(shape: BaseGeometry) -> tuple[float, float]:
-    """Return the shorter and the longer side of the least rectangle around a shape."""
+    """Return the shorter and the longer side of the least rectangle around a shape.
+
+    >>> rectangle_sides_m(shapely.box(0, 0, 3, 2))
+    (2.0, 3.0)
+    """
     box = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
     if len(box) < 3:
         return 0.0, 0.0

@@ -60,8 +60,6 @@ def fit_line_ransac(
     xy_m : (n, 2) float
     inlier_m : float
         Largest distance of an inlier from the line.
-    trials : int
-    rng : numpy.random.Generator
     weight : (n,) float, optional
         As how many points each counts.
 
@@ -118,7 +116,6 @@ def refit_line(
     xy_m : (n, 2) float
     normal, offset_m
         A line. While there are no two distinct points within `inlier_m` of it, it stays as it is.
-    inlier_m : float
     weight : (n,) float, optional
 
     Returns

@@ -16,6 +16,11 @@ def quaternions_to_matrices(quat_xyzw: FloatArray) -> FloatArray:
     ------
     ValueError
         If one is of length 0.
+
+    Examples
+    --------
+    >>> quaternions_to_matrices(np.array([[0.0, 0.0, 2.0, 0.0]]))[0].diagonal().tolist()
+    [-1.0, -1.0, 1.0]
     """
     length = np.linalg.norm(quat_xyzw, axis=1, keepdims=True)
     if not length.all():
@@ -33,6 +38,9 @@ def matrices_to_quaternions(turn: FloatArray) -> FloatArray:
     """Return unit quaternions (n, 4), w >= 0, of rotation matrices (n, 3, 3).
 
     S. W. Shepperd: Quaternion from rotation matrix, Journal of Guidance and Control 1 (1978).
+
+    >>> matrices_to_quaternions(np.eye(3)[None]).tolist()
+    [[0.0, 0.0, 0.0, 1.0]]
     """
     # four times the products of a quaternion's parts: every row is it, times four of its own part
     diagonal = np.einsum("nii->ni", turn)
@@ -52,7 +60,11 @@ def matrices_to_quaternions(turn: FloatArray) -> FloatArray:
 
 
 def vectors_to_matrices(vector_rad: FloatArray) -> FloatArray:
-    """Return the matrices (n, 3, 3) of rotation vectors (n, 3), by Rodrigues' formula."""
+    """Return the matrices (n, 3, 3) of rotation vectors (n, 3), by Rodrigues' formula.
+
+    >>> vectors_to_matrices(np.array([[0.0, 0.0, np.pi]]))[0].diagonal().round(6).tolist()
+    [-1.0, -1.0, 1.0]
+    """
     angle = np.linalg.norm(vector_rad, axis=1)[:, None, None]
     cross = cross_matrix(vector_rad)
     # sin(a) / a and (1 - cos(a)) / a^2, which are 1 and 1/2 where there is no turn
@@ -62,7 +74,11 @@ def vectors_to_matrices(vector_rad: FloatArray) -> FloatArray:
 
 
 def matrices_to_vectors(turn: FloatArray) -> FloatArray:
-    """Return rotation vectors (n, 3), at most half a turn long, of matrices (n, 3, 3)."""
+    """Return rotation vectors (n, 3), at most half a turn long, of matrices (n, 3, 3).
+
+    >>> matrices_to_vectors(np.eye(3)[None]).tolist()
+    [[0.0, 0.0, 0.0]]
+    """
     quat = matrices_to_quaternions(turn)
     sine = np.linalg.norm(quat[:, :3], axis=1, keepdims=True)
     angle = 2 * np.arctan2(sine, quat[:, 3:])
@@ -71,7 +87,11 @@ def matrices_to_vectors(turn: FloatArray) -> FloatArray:
 
 
 def cross_matrix(vector: FloatArray) -> FloatArray:
-    """Return [v]x with [v]x w = v x w, (..., 3) to (..., 3, 3)."""
+    """Return [v]x with [v]x w = v x w, (..., 3) to (..., 3, 3).
+
+    >>> (cross_matrix(np.array([0.0, 0.0, 1.0])) @ [1.0, 0.0, 0.0]).tolist()
+    [0.0, 1.0, 0.0]
+    """
     x, y, z = np.moveaxis(np.asarray(vector, float), -1, 0)
     zero = np.zeros_like(x)
     return np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*x.shape, 3, 3)

@@ -23,6 +23,11 @@ def pose_matrix(xyz_m: npt.ArrayLike, quat_xyzw: npt.ArrayLike) -> FloatArray:
     Returns
     -------
     (..., 4, 4) float64
+
+    Examples
+    --------
+    >>> pose_matrix([1.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0])[:3, 3].tolist()
+    [1.0, 2.0, 3.0]
     """
     xyz_m = np.asarray(xyz_m, float)
     quat_xyzw = np.asarray(quat_xyzw, float)
@@ -39,6 +44,10 @@ def split_pose(pose: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return positions (..., 3) and quaternions (..., 4), w >= 0, of 4 x 4 matrices.
 
     NaN stays NaN.
+
+    >>> xyz_m, quat_xyzw = split_pose(np.eye(4))
+    >>> xyz_m.tolist(), quat_xyzw.tolist()
+    ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0])
     """
     pose = np.asarray(pose, float)
     quat = np.full((*pose.shape[:-2], 4), np.nan)
@@ -49,13 +58,22 @@ def split_pose(pose: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
 
 
 def transform_points(a_from_b: npt.ArrayLike, xyz_b_m: npt.ArrayLike) -> FloatArray:
-    """Map points (n, 3) from frame b to frame a by one 4 x 4 matrix; float64."""
+    """Map points (n, 3) from frame b to frame a by one 4 x 4 matrix; float64.
+
+    >>> pose = pose_matrix([1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0])  # half a turn
+    >>> transform_points(pose, [[1.0, 0.0, 0.5]]).tolist()
+    [[0.0, 0.0, 0.5]]
+    """
     a_from_b = np.asarray(a_from_b, float)
     return np.asarray(xyz_b_m, float) @ a_from_b[:3, :3].T + a_from_b[:3, 3]
 
 
 def invert_pose(a_from_b: npt.ArrayLike) -> FloatArray:
-    """Return b_from_a of one or many 4 x 4 rigid motions."""
+    """Return b_from_a of one or many 4 x 4 rigid motions.
+
+    >>> invert_pose(pose_matrix([1.0, 2.0, 3.0], [0.0, 0.0, 0.0, 1.0]))[:3, 3].tolist()
+    [-1.0, -2.0, -3.0]
+    """
     a_from_b = np.asarray(a_from_b, float)
     back = a_from_b.copy()
     back[..., :3, :3] = np.swapaxes(a_from_b[..., :3, :3], -1, -2)
@@ -82,14 +100,22 @@ def nearest_rigid(pose: npt.ArrayLike) -> FloatArray:
 
 
 def turn_between_rad(one: FloatArray, other: FloatArray) -> float:
-    """Return by what angle two 4 x 4 poses are turned from one another, 0 to pi."""
+    """Return by what angle two 4 x 4 poses are turned from one another, 0 to pi.
+
+    >>> turn_between_rad(np.eye(4), np.diag([-1.0, -1.0, 1.0, 1.0])) == np.pi
+    True
+    """
     # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
     half_sine = np.linalg.norm(one[:3, :3] - other[:3, :3]) / np.sqrt(8)
     return 2 * float(np.arcsin(min(half_sine, 1.0)))
 
 
 def pose_yaw_rad(pose: npt.ArrayLike) -> FloatArray:
-    """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians."""
+    """Return the heading of 4 x 4 matrices: the angle of the x axis about z, radians.
+
+    >>> float(pose_yaw_rad(np.diag([-1.0, -1.0, 1.0, 1.0]))) == np.pi
+    True
+    """
     pose = np.asarray(pose, float)
     return np.arctan2(pose[..., 1, 0], pose[..., 0, 0])
 
@@ -127,7 +153,6 @@ def interpolate_poses(
     quat_xyzw : (n, 4) float
         Unit quaternions; the sign of each is free.
     query_ns : (m,) int64
-    max_gap_s : float
 
     Returns
     -------

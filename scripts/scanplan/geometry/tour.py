@@ -54,6 +54,12 @@ def shortest_tour(
     -------
     list of int
         Every place once; equal tours are decided by the lowest first place.
+
+    Examples
+    --------
+    >>> metres = np.abs(np.subtract.outer([0.0, 5.0, 1.0], [0.0, 5.0, 1.0]))
+    >>> shortest_tour(metres, closed=False)
+    [0, 2, 1]
     """
     known = metres if isinstance(metres, Distances) else _Known(np.asarray(metres, float))
     least_m = known.least_m
@@ -66,7 +72,12 @@ def shortest_tour(
 
 
 def tour_length(tour: Sequence[int], metres: FloatArray | Distances, *, closed: bool) -> float:
-    """Return the length of a tour."""
+    """Return the length of a tour.
+
+    >>> metres = np.array([[0.0, 2.0], [2.0, 0.0]])
+    >>> float(tour_length([0, 1], metres, closed=True))
+    4.0
+    """
     legs_m = sum(metres[a, b] for a, b in pairwise(tour))
     return float(legs_m + (metres[tour[-1], tour[0]] if closed else 0.0))
 

@@ -16,7 +16,11 @@ PLANAR_DIMENSIONS = (0, 1, 5)
 
 
 def twist_to_motion(twist: npt.ArrayLike) -> FloatArray:
-    """Return the 4 x 4 matrices of six numbers each, (..., 6) to (..., 4, 4)."""
+    """Return the 4 x 4 matrices of six numbers each, (..., 6) to (..., 4, 4).
+
+    >>> twist_to_motion([1.0, 2.0, 3.0, 0.0, 0.0, 0.0])[:3, 3].tolist()
+    [1.0, 2.0, 3.0]
+    """
     twist = np.asarray(twist, float)
     result = np.zeros((*twist.shape[:-1], 4, 4))
     turns = rotations.vectors_to_matrices(twist[..., 3:].reshape(-1, 3))
@@ -30,6 +34,9 @@ def motion_to_twist(a_from_b: npt.ArrayLike) -> FloatArray:
     """Return the six numbers of rigid motions, (..., 4, 4) to (..., 6).
 
     The inverse of `twist_to_motion`.
+
+    >>> motion_to_twist(np.eye(4)).tolist()
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
     a_from_b = np.asarray(a_from_b, float)
     turn = a_from_b[..., :3, :3]

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
+import scanplan
 from scanplan.plain_types import FilePath
 
 _PACKAGE = Path(__file__).parents[1]
@@ -44,6 +45,11 @@ def list_helpers(script: FilePath) -> list[Path]:
 def digest_helpers(script: FilePath) -> str:
     """Return 12 hexadecimal digits that name what the helpers of a script say."""
     return _digest_files(list_helpers(script))
+
+
+def state_version() -> str:
+    """Return what results state of the software that made them: its release and its code."""
+    return f"scanplan {scanplan.__version__}, code {digest_code()}"
 
 
 def digest_code() -> str:

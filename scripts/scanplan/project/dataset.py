@@ -155,7 +155,6 @@ def describe_dataset(
 
     Parameters
     ----------
-    name : str
     path : path-like or None
         A folder, a recording or the file of a simulated survey; the demo if None.
     defaults, schema : dict
@@ -281,7 +280,6 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
 
     Parameters
     ----------
-    found : Dataset
     methods, extractors : list of str
         All orderings, and all extractors: they find the walls of all scans.
 

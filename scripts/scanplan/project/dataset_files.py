@@ -68,7 +68,6 @@ def name_results(place: str, text: str) -> str:
     ----------
     place : str
         Where the text is from, for the message.
-    text : str
     """
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", text)
     texts.check_path(name)
@@ -91,7 +90,6 @@ def check_results_name(place: str, name: str) -> None:
     ----------
     place : str
         What bears the name, for the message.
-    name : str
 
     Raises
     ------
@@ -219,12 +217,7 @@ def is_of_stations(files: Iterable[str]) -> bool:
 
 def is_las_drive(files: Iterable[str]) -> bool:
     """Return whether the files are points in the map with a trajectory."""
-    return any(map(is_trajectory, files))
-
-
-def is_trajectory(file: str) -> bool:
-    """Return whether a file of a dataset says where the sensor of a .las was."""
-    return dataset_entries.is_trajectory(Path(file))
+    return any(dataset_entries.is_trajectory(Path(file)) for file in files)
 
 
 def is_grid_map(files: Iterable[str]) -> bool:

@@ -11,10 +11,6 @@ def match_names(names: Iterable[str]) -> str:
     What several names begin with is tried once for all of them: `re` tries the choices of a plain
     list one after the other, which for a thousand datasets takes a thousand times as long.
 
-    Parameters
-    ----------
-    names : iterable of str
-
     Returns
     -------
     str

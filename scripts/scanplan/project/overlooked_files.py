@@ -78,7 +78,6 @@ def note_misnamed(folder: Path, names: Sequence[str], what: str) -> str:
     ----------
     folder : path
         Or a recording, beside which there is nothing.
-    names : sequence of str
     what : str
         What they hold, with its verb: `corrections are`.
 

@@ -53,7 +53,7 @@ RENAMED = {
     "plan.openings.max_door_m": "building.max_door_m",
     "plan.trust.min_scans": "plan.merge.min_scans",
 }
-"""Old key to the new one; beside these, a key that is known below `advanced` has moved there."""
+"""Old key to the new one; beside these, a key that is known with or without `advanced` moved."""
 
 _LABELS = "labels of lines and surfaces decide now what is a wall"
 DROPPED = {
@@ -69,10 +69,35 @@ DROPPED = {
             "stub_length_m",
         )
     },
+    "thesis": "the laboratory's workflow alone knows it: workflow/thesis/Snakefile",
     "plan.right_angles": "faces are drawn as turned as their points are",
     "plan.pair.max_angle_deg": "it is always 5 degrees",
 }
 """Key or section that is gone, and why."""
+_FIXED = {
+    "registration": (
+        *("previous_apart_m", "previous_turn_deg", "min_facing_fitness", "icp_max_iterations"),
+        *("localiser_sigma_tilt_deg", "anchor_apart_m", "drift.submap_m"),
+    ),
+    "registration.graph": (
+        *("loop_radius_m", "loop_apart", "loop_step_m", "loop_step_planar_m", "loops_per_scan"),
+        *("loops_per_scan_planar", "loop_min_fitness", "edge_sigma_m", "edge_sigma_deg"),
+        "kernel_sigmas",
+    ),
+    "crispness": ("radius_m", "most_places"),
+    "selection": ("visibility.sector_deg", "visibility.min_height_m", "streaming.epsilon"),
+    "walls": (
+        *("cluster_ransac.trials", "iterative_ransac.trials", "iterative_ransac.max_planes"),
+        "thesis_ransac.max_trials",
+    ),
+    "plan.validation": ("max_rays", "span_m", "place_m"),
+}
+DROPPED |= {
+    f"{prefix}{section}.{key}": "no survey needed another value than its default"
+    for section, keys in _FIXED.items()
+    for key in keys
+    for prefix in ("", "advanced.")
+}
 
 
 def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
@@ -96,8 +121,8 @@ def explain_old_keys(given: Iterable[str], known: Iterable[str]) -> str | None:
 
 
 def _what_became(key: str, known: set[str]) -> str | None:
-    moved = f"advanced.{key}"
-    new = RENAMED.get(key) or (moved if moved in known else None)
+    moved = (f"advanced.{key}", key.removeprefix("advanced."))
+    new = RENAMED.get(key) or next((name for name in moved if name in known), None)
     if new:
         return f"{key} is now {new}"
     reasons = (why for old, why in DROPPED.items() if f"{key}.".startswith(f"{old}."))

@@ -30,7 +30,10 @@ OF_A_RUN = ("dataset", "replace")
 """Keys that say what a run is of, and nothing of how its results are made."""
 
 _DEFAULTS = "config/config.yaml"
-_ROOT = Path(__file__).parents[3]
+SCHEMA_FILE = Path(__file__).parents[3] / "workflow/schemas/config.schema.yaml"
+"""The schema of the settings."""
+LABORATORY_FILE = SCHEMA_FILE.parents[1] / "thesis/config.schema.yaml"
+"""That of what the laboratory has beside them."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,6 @@ def settings_of_dataset(
         See `read_defaults`.
     layers : sequence of Layer
         The dataset's own settings and the command line's; the later win.
-    schema : dict
 
     Returns
     -------
@@ -145,7 +147,6 @@ def find_origin(layers: Sequence[Layer], *keys: str) -> str | None:
 
     Parameters
     ----------
-    layers : sequence of Layer
     *keys : str
         Joined by dots: `plan.method`, or a section, `plan`.
     """
@@ -187,7 +188,8 @@ def end_on_faulty_settings(arguments: Sequence[str]) -> None:
     ------
     SystemExit
     """
-    schema = read_schema(_ROOT / "workflow/schemas/config.schema.yaml")
+    # which workflow will be run is not known yet
+    schema = read_schema(SCHEMA_FILE, LABORATORY_FILE)
     try:
         for path in _list_words(arguments, "--configf.*"):
             _check_file(path, schema)

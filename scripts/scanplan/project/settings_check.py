@@ -38,8 +38,6 @@ def check_settings(settings: Settings, schema: Schema, origin: str) -> None:
 
     Parameters
     ----------
-    settings : dict
-    schema : dict
     origin : str
         Where the settings come from, for the message.
 
@@ -104,7 +102,6 @@ def find_crossed_limits(settings: Settings, schema: Schema) -> tuple[tuple[str, 
     ----------
     settings : dict
         Checked by `check_settings`.
-    schema : dict
 
     Returns
     -------

@@ -10,7 +10,7 @@ from typing import Any
 from scanplan.project.settings_schema import ADVANCED, Schema, is_section, read_schema
 
 _ROOT = Path(__file__).parents[3]
-_SCHEMA = "workflow/schemas/config.schema.yaml"
+_SCHEMAS = ("workflow/schemas/config.schema.yaml", "workflow/thesis/config.schema.yaml")
 _MANUAL = "config/settings.md"
 _WIDTH = tomllib.loads((_ROOT / "pyproject.toml").read_text())["tool"]["ruff"]["line-length"]
 """Columns, as of the code."""
@@ -83,7 +83,6 @@ def fill_manual(manual: str, schema: Schema) -> str:
     manual : str
         Where it says `<!-- settings poses -->`, a table of that section stands up to
         `<!-- end -->`; `general` is for what is in no section.
-    schema : dict
     """
 
     def write(found: re.Match[str]) -> str:
@@ -152,7 +151,7 @@ def _below(limits: Schema) -> str | None:
 
 def write_settings_files(root: Path) -> None:
     """Write the lists of settings and the manual's tables of a project."""
-    schema = read_schema(root / _SCHEMA)
+    schema = read_schema(*(root / path for path in _SCHEMAS))
     for name, text in format_settings_files(schema).items():
         (root / "config" / name).write_text(text, encoding="utf-8")
     manual = root / _MANUAL

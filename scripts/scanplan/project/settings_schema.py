@@ -28,8 +28,13 @@ Schema = dict[str, Any]
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def read_schema(path: FilePath) -> Schema:
+def read_schema(path: FilePath, *further: FilePath) -> Schema:
     """Read the schema of the settings.
+
+    Parameters
+    ----------
+    *further : path-like
+        Schemas of more sections, as the laboratory's.
 
     Returns
     -------
@@ -38,7 +43,10 @@ def read_schema(path: FilePath) -> Schema:
         does not name.
     """
     schema = yaml.load(Path(path).read_text(encoding="utf-8"), _Loader)
-    return _complete(schema, schema.pop("$defs", {}))
+    complete = _complete(schema, schema.pop("$defs", {}))
+    for other in further:
+        complete["properties"] |= read_schema(other)["properties"]
+    return complete
 
 
 def default_settings(schema: Schema) -> dict[str, Any]:

@@ -29,7 +29,6 @@ _THESIS_RANSAC = (
     "max_tilt_deg",
     "seed",
     "model",
-    "max_trials",
 )
 _THESIS = {
     "thesis_iterative_ransac": _THESIS_RANSAC,
@@ -128,7 +127,7 @@ def select_extractor(settings: Settings, extractor: str) -> Keywords:
     }
     known = shared | {"door_height_m": building["door_height_m"], "seed": settings["seed"]}
     if extractor not in _THESIS:
-        return known | walls[extractor]
+        return known | walls.get(extractor, {})
     known |= walls["cluster_ransac"] | walls["thesis_ransac"]
     return {name: known[name] for name in _THESIS[extractor]}
 

@@ -114,7 +114,6 @@ def check_text(place: str, value: object, longest: int = LONGEST_NAME) -> str:
     ----------
     place : str
         What the message begins with: the file and the key.
-    value : object
     longest : int
         Characters.
 

@@ -41,10 +41,8 @@ def read_text(path: FilePath, remedy: str, most_bytes: int = _MOST_BYTES) -> str
 
     Parameters
     ----------
-    path : path-like
     remedy : str
         What the messages end with.
-    most_bytes : int
 
     Raises
     ------

@@ -73,7 +73,6 @@ def cull_spans(
 
     Parameters
     ----------
-    sectors : AzimuthSectors
     low, high : (2, k) int
         Rows that the spans of each scan begin at and end before.
     scans : (k,) int

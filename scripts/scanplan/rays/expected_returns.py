@@ -120,14 +120,12 @@ def count_sent_rays(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     face : face_rays.FaceRays
         Of these, with what is occluded within `NEAR_M`.
     low_m : float
         Where along its line the first column begins.
     count : int
         Number of columns.
-    column_m : float
     heights_m : (float, float)
         From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
 
@@ -137,7 +135,7 @@ def count_sent_rays(
         Of the views from the side of the line's normal and from near enough.
     """
     views = face.views
-    is_looking, expected = _expect_returns(rays, face, low_m, count, column_m, heights_m)
+    is_looking, expected = expect_returns(rays, face, low_m, count, column_m, heights_m)
     high_m = low_m + column_m * count
     bottom_m, top_m = heights_m
     grazing_m = _GRAZING * views.side_m
@@ -170,23 +168,11 @@ def expect_returns(
     count: int,
     column_m: float,
     heights_m: tuple[float, float],
-) -> FloatArray:
-    """Return how many returns there ought to be of the columns of a surface, (v, n).
-
-    As `count_sent_rays`, of the same views in the same order.
-    """
-    return _expect_returns(rays, face, low_m, count, column_m, heights_m)[1]
-
-
-def _expect_returns(
-    rays: RaySet,
-    face: FaceRays,
-    low_m: float,
-    count: int,
-    column_m: float,
-    heights_m: tuple[float, float],
 ) -> tuple[BoolArray, FloatArray]:
-    """Return which views look at the columns, and the returns (v, n) to be expected of these."""
+    """Return which views look at the columns, and the returns (v, n) to be expected of these.
+
+    Parameters as of `count_sent_rays`.
+    """
     views = face.views
     high_m = low_m + column_m * count
     beyond_m = np.maximum(low_m - views.sensor_along_m, views.sensor_along_m - high_m)

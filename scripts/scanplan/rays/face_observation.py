@@ -139,8 +139,6 @@ def observe_face(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
-    line : lines.Line
     low_m, high_m : float
         The stretch along the line.
     band_m : float, > 0
@@ -186,7 +184,6 @@ def look_beyond(
 
     Parameters
     ----------
-    seen : FaceObservation
     rays, low_m, high_m, band_m
         As of `observe_face`.
     """

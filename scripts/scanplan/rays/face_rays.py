@@ -115,8 +115,6 @@ def cast_at_face(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
-    line : lines.Line
     low_m, high_m : float
         The stretch along the line.
     at_m : float

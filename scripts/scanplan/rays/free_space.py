@@ -31,10 +31,6 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     two sectors on end nothing is known. Outlines err by 2 cm, and beside an edge by half of what is
     between two rays; spikes thinner than 8 cm are taken off.
 
-    Parameters
-    ----------
-    rays : ray_set.RaySet
-
     Returns
     -------
     list of shapely geometry

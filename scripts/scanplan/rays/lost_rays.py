@@ -36,13 +36,10 @@ def find_lost(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     face : face_rays.FaceRays
         Of these, with what is occluded within `expected_returns.NEAR_M`.
     low_m : float
         Where along its line the first column begins.
-    n_columns : int
-    column_m : float
     edges_m : (r + 1,) float64
         Of the rows of heights; those of planar scans are infinite.
     """
@@ -57,7 +54,7 @@ def find_lost(
         scan = face.views.scan[sent.view[view]]
         for number, heights_m in enumerate(itertools.pairwise(edges)):
             # of a row that the beams hardly reach as little is lost
-            of_row = expected_returns.expect_returns(rays, face, *columns, heights_m)
+            _, of_row = expected_returns.expect_returns(rays, face, *columns, heights_m)
             own = np.minimum(of_row[view, column], sent.expected[view, column])
             row = np.full(len(view), first + number)
             found.append(LostRays(scan, column, row, own * of_band))

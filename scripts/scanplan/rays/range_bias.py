@@ -102,10 +102,8 @@ def estimate_range_bias(
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     segments : dict of str to (n,) array
         The columns of `schemas.WALLS`; those of other scans than the rays' say nothing.
-    settings : RangeSettings
     band_m : float
         Points this near to a segment are of it.
     up : (s, 3) float

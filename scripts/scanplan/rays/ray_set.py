@@ -183,7 +183,6 @@ def gather_rays(
         `scan_id`, increasing, and points in the map frame.
     sensors_m : dict of int to (3,) float
         Sensor's position by `scan_id`.
-    planar : bool
     threads : int
         Cores to use.
 

@@ -34,8 +34,8 @@ class VisibilitySettings:
     """
 
     range_m: float
-    sector_deg: float
-    min_height_m: float
+    sector_deg: float = 2.0  # at least twice the angle between beams
+    min_height_m: float = 0.3  # what is lower is looked over
     max_height_m: float
 
 
@@ -56,14 +56,12 @@ def scan_free_space(
 
     Parameters
     ----------
-    scan_id : int
     xyz_m : (n, 3) float
         The scan's points, map frame; their order does not matter.
     sensor_xyz_m : (3,) float
         The sensor's position, map frame.
     planar : bool
         Whether all points are in one horizontal plane.
-    settings : VisibilitySettings
 
     Returns
     -------

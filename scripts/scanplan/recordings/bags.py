@@ -127,7 +127,6 @@ class Bag:
 
         Parameters
         ----------
-        names : collection of str
         n_unread : int
             So many at the beginning are only counted: where an index tells them, they come as no
             bytes.

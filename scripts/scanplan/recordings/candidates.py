@@ -36,8 +36,6 @@ def choose_candidates(
     ----------
     world_from_sensor : (n, 4, 4) float
         NaN where not known.
-    keep_every : int
-    max_step_m, max_turn_deg : float
     is_steady : (n,) bool, optional
         During which scans it is known how the sensor moved, by default all. Instead of another the
         next of these is taken, unless the sensor moves on twice as far or turns twice as much.

@@ -65,12 +65,10 @@ def keep_in_range(
 
     Parameters
     ----------
-    scan_id, t_ns : int
     xyz_m : (n, 3) float
         Sensor frame.
     time_raw : (n,) number or None
         As recorded.
-    min_range_m, max_range_m : float
     sweep_times : point_times.TimeConvention, optional
         How the times are written; without it there are none.
 

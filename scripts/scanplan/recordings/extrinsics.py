@@ -121,7 +121,6 @@ def find_extrinsics(
 
     Parameters
     ----------
-    tree : tf_tree.FrameTree
     base : str
         The frame that the poses are of; empty if it is not stated.
     sensor : str

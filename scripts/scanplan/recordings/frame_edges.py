@@ -88,7 +88,6 @@ def make_track_edge(
 
     Parameters
     ----------
-    parent, child : str
     t_ns, receive_ns : (n,) int64
         Header stamps and receive times, in the order of recording. If all stamps are 0 the receive
         times count.

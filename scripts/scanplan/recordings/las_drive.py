@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files
+from scanplan.project import dataset_entries
 from scanplan.recordings import frame_edges, map_origin, trajectory_file
 from scanplan.recordings.las_points import LasBlock, list_blocks
 from scanplan.recordings.motion.pose_kind import LOCALISER
@@ -61,8 +61,9 @@ class LasDrive(UntimedScans):
     """
 
     def __init__(self, files: Sequence[str], **reading: Any) -> None:
-        path = next(Path(file) for file in files if dataset_files.is_trajectory(file))
-        clouds = [Path(file) for file in files if not dataset_files.is_trajectory(file)]
+        paths = [Path(file) for file in files]
+        path = next(filter(dataset_entries.is_trajectory, paths))
+        clouds = [file for file in paths if not dataset_entries.is_trajectory(file)]
         time_s, xyz_m = trajectory_file.read_trajectory(path)
         xyz_m = xyz_m - (origin_m := map_origin.find_origin(str(path), xyz_m))
         blocks = [block for cloud in clouds for block in list_blocks(cloud)]

@@ -29,7 +29,6 @@ def read_header(raw: bytes, *, ros2: bool) -> tuple[int, str]:
     ----------
     raw : bytes-like
         ROS 1 serialisation, or CDR with its four bytes of encapsulation.
-    ros2 : bool
 
     Returns
     -------
@@ -105,10 +104,6 @@ def read_point_cloud(message: Any) -> tuple[FloatArray, Array | None]:
 
 def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
     """Turn a sensor_msgs/LaserScan into points of the plane z = 0.
-
-    Parameters
-    ----------
-    message : LaserScan
 
     Returns
     -------

@@ -22,7 +22,6 @@ class PoseChains:
 
     Parameters
     ----------
-    index : small_messages.SmallMessages
     base_frame : str or None
         What the poses are of, by the config.
     extrinsics : list of frame_edges.FrameEdge or None

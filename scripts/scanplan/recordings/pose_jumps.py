@@ -15,7 +15,6 @@ def find_jumps(t_ns: IntArray, xyz_m: FloatArray, *, max_speed_m_s: float) -> Bo
     ----------
     t_ns : (n,) int64, strictly increasing
     xyz_m : (n, 3) float
-    max_speed_m_s : float
 
     Returns
     -------

@@ -30,10 +30,8 @@ class PosedScans(ABC):
         Of which kind the poses are where the settings do not say: see `pose_kind`.
     base_from_sensor : (6,) float or None
         x, y, z in metres, roll, pitch, yaw in degrees; by default the poses are the sensor's own.
-    min_range_m, max_range_m : float
     max_damaged_share : float
         Of the clouds that are read.
-    pose_kind : str
     """
 
     def __init__(

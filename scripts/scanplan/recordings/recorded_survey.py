@@ -68,10 +68,8 @@ class BagSurvey:
     ----------
     recordings : list of bags.Bag
         Open.
-    cloud_topic, pose_topic, base_frame : str or None
     base_from_sensor : (6,) float or None
         x, y, z in metres, roll, pitch, yaw in degrees.
-    min_range_m, max_range_m : float
     max_damaged_share : float
         Of the clouds that are read.
     pose_kind : str, optional

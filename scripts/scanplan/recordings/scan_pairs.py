@@ -51,7 +51,6 @@ def measure_met(
     ----------
     target_m, source_m : (n, 3), (m, 3) float
     target_from_source : (4, 4) float64
-    planar : bool
     scale : float
         How many of their unit a metre is.
     """

@@ -153,8 +153,6 @@ def read_small_messages(
 
     Parameters
     ----------
-    bags : list of bags.Bag
-    cloud : topics.Topic
     needed : list of topics.Topic
         Poses and transforms.
     optional : list of topics.Topic

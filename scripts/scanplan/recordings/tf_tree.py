@@ -61,7 +61,6 @@ class FrameTree:
 
         Parameters
         ----------
-        frame : str
         follows : callable
             The climb goes only over edges that it accepts.
 
@@ -154,7 +153,6 @@ class FrameTree:
 
         Parameters
         ----------
-        frame : str
         world : str
             The frame that the poses are given in; the climb stops below it too.
         """

@@ -53,7 +53,6 @@ def merge_topics(topics: Iterable[Topic], where: str) -> list[Topic]:
 
     Parameters
     ----------
-    topics : iterable of Topic
     where : str
         What they belong to, for the error.
 
@@ -85,7 +84,6 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
 
     Parameters
     ----------
-    topics : list of Topic
     wanted : str or None
         The config's `input.cloud_topic`.
     where : str

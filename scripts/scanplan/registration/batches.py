@@ -52,8 +52,6 @@ def cut_survey(
 
     Parameters
     ----------
-    n_candidates : int
-    settings : registration_settings.RegistrationSettings
     chunk : str, optional
         `2-of-5`: of five contiguous parts of the batches the second alone; none where there are
         fewer batches than parts.
@@ -103,10 +101,8 @@ def batch_jobs(
         The candidates of these batches, in order.
     raw : scan_cache.ScanCache
         Empty.
-    survey : CandidateScans
     cut : list of (first, begin, end)
         Successive batches, as of `cut_survey`.
-    limits : registration_settings.SequentialSettings
     """
     pending = deque(cut)
     n_before = cut[0][0] if cut else 0
@@ -127,10 +123,8 @@ def register_batch(
     ----------
     part : scan_cache.ScanCachePart
         The candidates' points, sensor frame.
-    batch : CandidateScans
     n_early : int
         So many candidates at the start belong to the batch before.
-    limits : registration_settings.SequentialSettings
 
     Returns
     -------
@@ -168,8 +162,6 @@ def register_frames(
         The candidates, in order.
     raw, thinned : scan_cache.ScanCache
         Empty; left with the points of all candidates, and with the thinned points of the kept ones.
-    survey : CandidateScans
-    limits : registration_settings.SequentialSettings
 
     Returns
     -------

@@ -66,7 +66,6 @@ def refine_scan(
         At the localiser's pose.
     targets : sequence of PlacedScan
         The best first.
-    settings : registration_settings.SequentialSettings
 
     Returns
     -------
@@ -116,7 +115,6 @@ def comparable_scans(
         At the localiser's pose.
     previous : sequence of PlacedScan, at least one
         Their order is kept.
-    settings : registration_settings.SequentialSettings
     """
 
     def is_near(other: PlacedScan) -> bool:
@@ -143,12 +141,10 @@ def measure_constraint(
 
     Parameters
     ----------
-    source, target : PlacedScan
     kind : str
         See `PoseConstraint`.
     distances_m : sequence of float
         See `icp.align_clouds`.
-    settings : registration_settings.SequentialSettings
     """
     start = relative_pose(source, target)
     fit = icp.align_clouds(

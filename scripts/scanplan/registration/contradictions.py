@@ -13,6 +13,7 @@ from scanplan.registration.mapping import StepsBetween
 from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.prepared_clouds import PreparedScans
+from scanplan.registration.registration_settings import DriftSettings
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage.witness_table import CUT, WITNESSES
 from scanplan.stage.witnesses import Measured, state_witness
@@ -23,7 +24,6 @@ _UNASKED = ("too_few_points", "pose_gap")
 _FEET = 0.3048  # metres
 _NEAR_FEET = 0.1  # of that: so few alignments are right where units differ
 _ASKED = 10  # scans whose points tell how far walls are
-_SUBMAP_M = 4.0  # of way, as advanced.registration.drift.submap_m
 _STATION_M = 0.5  # scans nearer to one another add next to nothing to a submap
 _SURE = 2.0  # standard deviations of a scale
 _ALL_BUT = (2.0, 98.0)  # percent of heights: a pose or two that err are no storey
@@ -36,7 +36,6 @@ def measure_standstill(priors: FloatArray, scan_results: Sequence[ScanResult]) -
     ----------
     priors : (n, 4, 4) float64
         World from sensor by the recorded poses, NaN without one.
-    scan_results : sequence of n sequential.ScanResult
     """
     poses = priors[np.isfinite(priors).all(axis=(1, 2))]
     n_left = sum(not r.kept for r in scan_results if r.reason not in _UNASKED)
@@ -97,12 +96,10 @@ def measure_map(
 
     Parameters
     ----------
-    survey : batches.CandidateScans
     t_ns : (n,) int64
         Stamps of the candidates.
     scan_results : sequence of sequential.ScanResult
         One per candidate.
-    optimised : multiway.OptimisedMap
     clouds : prepared_clouds.PreparedScans
         Of those that are kept.
     odometry : callable, optional
@@ -205,6 +202,6 @@ def _measure_places(
 
     way_m = measure_way(world_from_cloud)
     is_station = loops.choose_stations(world_from_cloud, _STATION_M)
-    pieces = [rows[is_station[rows]] for rows in submaps.cut_way(way_m, _SUBMAP_M)]
+    pieces = [rows[is_station[rows]] for rows in submaps.cut_way(way_m, DriftSettings.submap_m)]
     maps = submaps.make_submaps([rows for rows in pieces if len(rows)], clouds, world_from_cloud)
     return folds.measure_folds(maps, world_from_cloud, way_m, drifts=False, t_ns=t_ns)

@@ -31,7 +31,6 @@ def check_any_survives(
     ----------
     scan_results : sequence of sequential.ScanResult
         One per candidate.
-    survey : batches.CandidateScans
     read_points : callable
         `read_points(rows)` iterates over the points of these candidates.
     limits : registration_settings.SequentialSettings
@@ -85,12 +84,10 @@ def find_passing_distance_m(
 
     Parameters
     ----------
-    survey : batches.CandidateScans
     frames : (n,) int
         Rows of the candidates that have a pose and points, n >= 2.
     read_points : callable
         As of `check_any_survives`.
-    limits : registration_settings.SequentialSettings
     """
     n_asked = min(_MOST_ASKED, len(frames) - 1)
     asked = np.unique(np.linspace(1, len(frames) - 1, n_asked).round().astype(int))

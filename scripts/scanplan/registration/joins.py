@@ -56,7 +56,6 @@ def find_tied(scan_ids: IntArray, optimised: OptimisedMap) -> BoolArray:
     Parameters
     ----------
     scan_ids : (n,) int, increasing
-    optimised : multiway.OptimisedMap
     """
     tied = [
         edge.source

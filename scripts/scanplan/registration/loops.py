@@ -31,7 +31,6 @@ def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
     ----------
     world_from_scan : (n, 4, 4) float64
         In the order of their recording.
-    step_m : float
 
     Returns
     -------
@@ -174,7 +173,6 @@ def rank_in_visits(rows: IntArray, cost: FloatArray, apart: int) -> IntArray:
     rows : (n,) int, increasing
         Those more than `apart` after the one before are of another visit.
     cost : (n,) float
-    apart : int
     """
     of_visits = np.split(cost, _find_visits(rows, apart))
     return np.concatenate([of_visit.argsort(kind="stable").argsort() for of_visit in of_visits])
@@ -255,8 +253,6 @@ def align_pairs(
         Their approximate poses.
     pairs : sequence of (source, target)
         Rows.
-    planar : bool
-    settings : registration_settings.SequentialSettings
     min_fitness : float
         Pairs that overlap less after alignment get no constraint.
     apart : int

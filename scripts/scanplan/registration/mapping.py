@@ -39,7 +39,6 @@ def register_candidates(
 
     Parameters
     ----------
-    survey : CandidateScans
     cut : list of (first, begin, end)
         Batches of it, as of `batches.cut_survey`; all of them where frames are compared.
     scans : iterable of clouds.Scan
@@ -49,7 +48,6 @@ def register_candidates(
         ones that belong to the batches.
     run : callable
         As `workers.open_pool` gives it.
-    settings : registration_settings.RegistrationSettings
 
     Returns
     -------
@@ -79,8 +77,6 @@ def optimise_map(
 
     Parameters
     ----------
-    survey : CandidateScans
-    scan_results : sequence of sequential.ScanResult
     edges : list of constraints.PoseConstraint
         Of all candidates, as registered one after the other.
     thinned : scan_cache.ScanCache
@@ -122,7 +118,6 @@ def find_unconfirmed(
         Of all candidates, in order.
     is_constrained : (n,) bool
         Whether a candidate has a constraint that is an inlier.
-    apart_m : float
 
     Returns
     -------

@@ -115,9 +115,6 @@ def optimise_poses(
         The points that `prepared_clouds.prepare_cloud` takes, one cloud per retained scan.
     run : callable
         As `workers.open_pool` gives it.
-    planar : bool
-    limits : registration_settings.SequentialSettings
-    settings : registration_settings.PoseGraphSettings
     odometry : graph_equations.MotionConstraints, optional
         Motions between scans that were measured beside the localiser's poses.
     """
@@ -246,8 +243,6 @@ def choose_pairs(
         As of `optimise_poses`.
     constrained : set of (source, target)
         Rows that have a constraint already.
-    settings : registration_settings.PoseGraphSettings
-    planar : bool
 
     Returns
     -------

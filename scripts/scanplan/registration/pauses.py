@@ -19,7 +19,6 @@ def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) 
     scan_ids : (n,) int, increasing
     t_ns : (n,) int64
         Their stamps.
-    optimised : multiway.OptimisedMap
     """
     ties = [
         sorted((edge.source, edge.target))

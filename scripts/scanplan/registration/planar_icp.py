@@ -31,12 +31,10 @@ def align_planar(
 
     Parameters
     ----------
-    source, target : PreparedCloud
     start : (4, 4) float64
         target_from_source.
     distance_m : float
         Points farther apart are no pair.
-    max_iterations : int
     step_done : float
         A smaller step, metres and radians, is the last.
 

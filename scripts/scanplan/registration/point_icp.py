@@ -23,7 +23,6 @@ def align_points(
         target_from_source.
     distance_m : float
         Points farther apart are no pair.
-    max_iterations : int
 
     Returns
     -------

@@ -24,7 +24,6 @@ def estimate_covariance(
 
     Parameters
     ----------
-    equations : GraphEquations
     state : GraphState
         Of these poses.
     factors : scipy.sparse.linalg.SuperLU

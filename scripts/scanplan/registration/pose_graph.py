@@ -64,7 +64,6 @@ def solve_pose_graph(
     Parameters
     ----------
     start : (n, 4, 4) float64
-    constraints : MotionConstraints
     priors : (n, 4, 4) float64
         Poses as measured on their own.
     prior_information : (n, 6, 6) float64

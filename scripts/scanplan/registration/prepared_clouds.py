@@ -99,7 +99,6 @@ def thin_voxels(xyz_m: FloatArray, *, planar: bool, voxel_m: float) -> FloatArra
     Parameters
     ----------
     xyz_m : (n, 3) float
-    planar : bool
     voxel_m : float
         Edge of a voxel, metres.
     """
@@ -180,7 +179,6 @@ def measure_overlap(
 
     Parameters
     ----------
-    source, target : PreparedCloud
     target_from_source : (4, 4) float64
     distance_m : float
         Metres. A source point with a target point nearer than this has a neighbour.

@@ -194,7 +194,6 @@ def find_reading(
     t_ns : (n,) int64
     read_points : callable
         Returns the points (k, 3) of some rows, in the sensor's frame.
-    planar : bool
     moved_at : callable, optional
         See `list_readings`.
     """

@@ -11,8 +11,8 @@ from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.pose_graph import INLIER_WEIGHT
 from scanplan.registration.sequential import ScanResult
-from scanplan.store import pose_columns, schemas
-from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
+from scanplan.store import pose_columns
+from scanplan.types import Array, FilePath, FloatArray, IntArray
 
 _FARTHEST_M = SHORTEST_M / np.finfo(np.float32).eps  # single precision resolves no more there
 
@@ -72,7 +72,6 @@ def check_any_kept(results: Sequence[ScanResult], n_dropped: int, where: FilePat
 
     Parameters
     ----------
-    results : sequence of sequential.ScanResult
     n_dropped : int
         Points that were dropped on reading.
     where : path-like
@@ -85,13 +84,6 @@ def check_any_kept(results: Sequence[ScanResult], n_dropped: int, where: FilePat
             " input.min_range_m, input.max_range_m and registration.min_points, and whether the"
             " clouds hold returns at all"
         )
-
-
-def pose_matrices(columns: Columns) -> FloatArray:
-    """Return (n, 4, 4) matrices, NaN where unknown, of a table with the columns of a pose."""
-    xyz_m = np.column_stack([columns[name] for name in schemas.XYZ])
-    quat_xyzw = np.column_stack([columns[name] for name in schemas.QUAT])
-    return se3.pose_matrix(xyz_m, quat_xyzw)
 
 
 def constraint_columns(optimised: OptimisedMap | None) -> dict[str, Array]:

@@ -74,7 +74,6 @@ class ScanRegistrar(ABC):
 
         Parameters
         ----------
-        scan_id : int
         xyz_m : (n, 3) float
             Points in the sensor frame, finite.
         prior : (4, 4) float
@@ -119,7 +118,6 @@ class ScanRegistrar(ABC):
 
         Parameters
         ----------
-        scan : constraints.PlacedScan
         level_from_sensor : (4, 4) float64
             Its cloud's frame from the sensor's.
 

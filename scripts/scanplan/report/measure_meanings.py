@@ -63,10 +63,6 @@ _WORDS = {
 def measure_meaning(column: str) -> str:
     """Return what a column of `schemas.PLAN_EVALUATION` means; nothing of one that is not known.
 
-    Parameters
-    ----------
-    column : str
-
     Returns
     -------
     str

@@ -111,7 +111,6 @@ def write_overview(
     ----------
     overview : pandas.DataFrame
         See `gather_overview`.
-    results : path-like
     page_sources : dict of str to str
         The template `overview.html.j2` and what it takes in, see `templates.render_template`.
     """

@@ -66,11 +66,8 @@ def report_page(
     ----------
     sources : dict of str to str
         File name to text of `page.html.j2` and of all that it asks for.
-    plan : floorplan.FloorPlan
-    survey : SurveyFacts
     points : point_image.PointImage
         What the chosen scans saw, from above.
-    run : RunFacts
 
     Returns
     -------

@@ -46,7 +46,6 @@ def draw_point_image(scans: Iterable[tuple[int, Array]], plan: FloorPlan) -> Poi
     ----------
     scans : iterable of (scan_id, (n, 3) array)
         Map frame, metres; read one at a time.
-    plan : floorplan.FloorPlan
 
     Returns
     -------

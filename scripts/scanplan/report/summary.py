@@ -19,11 +19,6 @@ _INDENT = 9  # of the longest word before a line, `doubtful`
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
     """Return the lines that say what was found, how far to trust it, and of how many scans.
 
-    Parameters
-    ----------
-    plan : floorplan.FloorPlan
-    survey : SurveyFacts
-
     Returns
     -------
     str

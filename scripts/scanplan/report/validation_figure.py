@@ -25,7 +25,6 @@ def draw_validation_figure(elements: Columns, rays: Columns, title: str) -> Figu
     ----------
     elements, rays : dict of str to (n,) array
         Columns of `schemas.VALIDATION` and `VALIDATION_RAYS`; there may be no rays.
-    title : str
 
     Returns
     -------

@@ -23,10 +23,6 @@ def bound_any_subset(order: GreedyOrder) -> FloatArray:
     polygons do. Any j gives a bound: all small ones are tried, and of larger ones each a
     thirty-second above the last, so that the time grows hardly faster than n.
 
-    Parameters
-    ----------
-    order : lazy_greedy.GreedyOrder
-
     Returns
     -------
     (n,) float64

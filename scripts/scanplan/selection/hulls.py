@@ -39,7 +39,6 @@ def make_cluster_hulls(
 
     Parameters
     ----------
-    scan_id : int
     xyz_m : (n, 2) or (n, 3) float, n >= 1
         Map coordinates, z up; z is not looked at.
     n_clusters : int, 1 to 32,767

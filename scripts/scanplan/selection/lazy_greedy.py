@@ -117,7 +117,6 @@ def choose_greedily(
 
     Parameters
     ----------
-    cover : Cover
     tie, relative_tie : float
         Gains are equal to the largest from `(1 - relative_tie) * largest - tie` on.
     most : (n,) float, optional

@@ -13,6 +13,7 @@ of a surface that several returns show (`upright_surfaces`), and counts as many 
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -21,7 +22,6 @@ from scanplan.extraction.upright_surfaces import UprightSurfaces
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.rays import levels, sensor_frame
 from scanplan.rays.tolerances import NEAR_FLOOR_M
-from scanplan.store.tables import ScanStore
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 FACINGS = ("-x", "+x", "-y", "+y")
@@ -97,7 +97,6 @@ def observe_wall_cells(
         The sensor's position, map frame.
     planar : bool
         Whether all points are in one horizontal plane.
-    settings : WallCellSettings
     axes_deg : int
         How far the cells' axes are turned from the map's, counter-clockwise: the same for all scans
         of a survey, see `find_main_direction`.
@@ -136,18 +135,28 @@ def observe_wall_cells(
     }
 
 
-def choose_axes_deg(store: ScanStore, sensors_m: FloatArray, settings: WallCellSettings) -> int:
+class MapScans(Protocol):
+    """Scans in the map frame, as `tables.ScanStore` and `arrays.PlacedScans` read them."""
+
+    planar: bool
+    scan_ids: IntArray
+
+    def scans(self, scan_ids: IntArray) -> Iterable[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m) of these scans."""
+        ...
+
+
+def choose_axes_deg(store: MapScans, sensors_m: FloatArray, settings: WallCellSettings) -> int:
     """Return how far the axes of a survey's cells are turned, by some scans all along the drive.
 
     In the plane they are the map's: there half of the best shows a cell, so that noise adds little.
 
     Parameters
     ----------
-    store : tables.ScanStore
-        All scans, map frame.
+    store : MapScans
+        All scans.
     sensors_m : (n, 3) float
         Where the sensor was at each.
-    settings : WallCellSettings
     """
     if store.planar:
         return 0

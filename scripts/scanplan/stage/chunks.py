@@ -10,7 +10,6 @@ def rows_of_chunk(n_rows: int, chunk: str | None) -> IntArray:
 
     Parameters
     ----------
-    n_rows : int
     chunk : str or None
         `2-of-5`: the second of five; None: all rows.
 

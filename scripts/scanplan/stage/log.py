@@ -200,7 +200,6 @@ def report_progress(
 
     Parameters
     ----------
-    items : iterable
     label : str
         The stage's name.
     total : int, optional

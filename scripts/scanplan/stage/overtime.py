@@ -28,7 +28,7 @@ LOWERED_BY = {
     "validate_plan": "a lower advanced.plan.validation.max_scans",
     "plan_next_visit": "a higher advanced.plan.next_visit.spacing_m",
     "measure_crispness": "a lower advanced.crispness.most_points",
-    "export_cloud": "a higher advanced.plan.export.cloud.cell_m",
+    "export_cloud": "a higher plan.export.cloud.cell_m",
 }
 """Stage to the change of a setting that makes it shorter."""
 
@@ -46,7 +46,6 @@ def tell_overtime(stage: str, expected_s: float, tell: Callable[[str], None]) ->
 
     Parameters
     ----------
-    stage : str
     expected_s : float
         NaN: nothing is ever told.
     tell : callable
@@ -69,8 +68,6 @@ class _Watcher:
 
     Parameters
     ----------
-    stage : str
-    expected_s : float
     thread : int
         Its identifier.
     """

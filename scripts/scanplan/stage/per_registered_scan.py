@@ -30,7 +30,6 @@ def map_registered_scans(
         scans.parquet and registration.parquet.
     label : str
         The stage's name, for the progress line.
-    threads : int
     settings : object
         Passed on.
     chunk : str, optional

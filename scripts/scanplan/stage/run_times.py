@@ -88,7 +88,6 @@ def group_by_name(paths: Sequence[FilePath], job: str) -> dict[str, list[FilePat
     ----------
     paths : sequence of path-like
         `<job>_<name>.tsv`, or `<job>_<name>_2-of-5.tsv` of a chunk of the scans.
-    job : str
     """
     groups: dict[str, list[FilePath]] = {}
     for path in paths:

@@ -56,30 +56,22 @@ CUT = (
 )
 """What helps where a map changed."""
 
+_MISFIT = Witness(
+    0.15,
+    _SHARE,
+    SIGN,
+    NOT_A_PLAN,
+    "scans do not fit one another",
+    "only {n_kept:,} of {n_asked:,} scans fit one another where their poses put them",
+    "{cause}",
+    "{remedy}",
+)
 # the most that sound surveys have stands beside each: 72 simulated drives of the bench, but for
 # those whose localiser did err by as much by their truth, and 12 real or public ones
 WITNESSES = {
     # 9 % in 28 sound surveys, ten of them recorded
-    "misfit": Witness(
-        0.15,
-        _SHARE,
-        SIGN,
-        NOT_A_PLAN,
-        "scans do not fit one another",
-        "only {n_kept:,} of {n_asked:,} scans fit one another where their poses put them",
-        "{cause}",
-        "{remedy}",
-    ),
-    "misread": Witness(
-        0.15,
-        _SHARE,
-        FOUND,
-        NOT_A_PLAN,
-        "scans do not fit one another",
-        "only {n_kept:,} of {n_asked:,} scans fit one another where their poses put them",
-        "{cause}",
-        "{remedy}",
-    ),
+    "misfit": _MISFIT,
+    "misread": _MISFIT._replace(tells=FOUND),
     # a sensor that did stand still loses none
     "standstill": Witness(
         0,

@@ -36,7 +36,6 @@ def open_pool(
 
     Parameters
     ----------
-    threads : int
     setup : callable, optional
         `setup(*state)` is called once in every process that works, before its first job.
 
@@ -83,12 +82,6 @@ def map_in_threads(
     For work on large arrays that all jobs share, nearly all of which numpy does without Python's
     lock.
 
-    Parameters
-    ----------
-    function : callable
-    jobs : iterable
-    threads : int
-
     Returns
     -------
     list
@@ -107,7 +100,6 @@ def begin_in_thread(
 
     Parameters
     ----------
-    function : callable
     *arguments
         Its arguments.
     threads : int

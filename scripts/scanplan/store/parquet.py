@@ -136,8 +136,6 @@ def open_file(
 
     Parameters
     ----------
-    path : path-like
-    schema : Schema
     footer : pyarrow.parquet.FileMetaData, optional
         The file's own, as it was checked when the file was opened before; it is not read again.
 

@@ -36,7 +36,6 @@ def read_registered_scans(path: FilePath, store: tables.ScanStore | None = None)
 
     Parameters
     ----------
-    path : path-like
     store : ScanStore, optional
         Their points; where given, those of every scan must be there, so that none is lost in
         silence.
@@ -95,7 +94,6 @@ def rows_of_scans(
     Parameters
     ----------
     scan_ids : (k,) int
-    scans : RegisteredScans
     path, origin : path-like
         Where the scan_ids and the registered scans come from, for the message.
 

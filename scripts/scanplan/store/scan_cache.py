@@ -18,7 +18,6 @@ class ScanCache:
 
     Parameters
     ----------
-    path : pathlib.Path
     file : binary file, open for writing
     """
 
@@ -50,7 +49,6 @@ class ScanCachePart:
 
     Parameters
     ----------
-    path : str
     ranges : list of (int, int)
         First point of each cloud, and the one behind its last.
     """

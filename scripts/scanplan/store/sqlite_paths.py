@@ -14,7 +14,6 @@ def check_sqlite_path(path: FilePath, remedy: str) -> None:
 
     Parameters
     ----------
-    path : path-like
     remedy : str
         What can be done instead of moving it.
 

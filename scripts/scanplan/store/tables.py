@@ -32,8 +32,6 @@ def write_table(
 
     Parameters
     ----------
-    path : path-like
-    schema : Schema
     columns : dict of str to (n,) array-like
         Exactly the schema's columns.
     allow_empty : bool
@@ -73,11 +71,8 @@ def read_table(
 
     Parameters
     ----------
-    path : path-like
-    schema : Schema
     columns : sequence of str, optional
         Only these columns; all of them by default.
-    allow_empty : bool
 
     Returns
     -------
@@ -131,13 +126,11 @@ def open_scan_writer(
 
     Parameters
     ----------
-    path : path-like
     planar : bool
         Whether the sensor measures in one plane only (a 2-D laser scanner); kept in the file for
         later stages.
     schema : Schema
         Of which scans and in which frame: by default the registered ones in the map.
-    allow_empty : bool
 
     Yields
     ------
@@ -181,10 +174,8 @@ class ScanStore:
 
     Parameters
     ----------
-    path : path-like
     schema : Schema
         As `open_scan_writer` wrote it.
-    allow_empty : bool
 
     Attributes
     ----------

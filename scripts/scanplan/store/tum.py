@@ -17,10 +17,6 @@ END_NS = np.iinfo(np.int64).max
 def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     """Read poses; text after `#` is a comment, commas part numbers like spaces.
 
-    Parameters
-    ----------
-    path : path-like
-
     Returns
     -------
     t_ns : (n,) int64

@@ -48,7 +48,6 @@ def estimate_shares(group: IntArray, place: IntArray, is_good: BoolArray, n_grou
     ----------
     group, place : (n,) int, >= 0
     is_good : (n,) bool
-    n_groups : int
     """
     counts = _count_by_place(group, place, is_good, n_groups)
     n, n_good, m = counts.summed(counts.size), counts.summed(counts.good), counts.n_places

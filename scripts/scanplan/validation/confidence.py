@@ -36,7 +36,6 @@ def rate_elements(
 
     Parameters
     ----------
-    plan : FloorPlan
     validation : dict of str to (n,) array
         The columns of `schemas.VALIDATION`.
     coefficients : dict

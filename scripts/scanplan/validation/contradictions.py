@@ -19,7 +19,6 @@ def measure_drawn_walls(plan: FloorPlan, rays: RaySet, track_m: FloatArray) -> l
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     rays : ray_set.RaySet
         Of the chosen scans.
     track_m : (k, 2) float64

@@ -81,7 +81,6 @@ def list_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> DrawnSurfa
 
     Parameters
     ----------
-    plan : FloorPlan
     span_m : float, > 0
         Faces and outlines are cut into equal spans of at most this length, each an element.
     planar : bool

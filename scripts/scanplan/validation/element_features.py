@@ -41,7 +41,6 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
 
     Parameters
     ----------
-    plan : FloorPlan
     validation : dict of str to (n,) array
         The columns of `schemas.VALIDATION`.
     """

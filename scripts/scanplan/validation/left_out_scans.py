@@ -25,14 +25,11 @@ def draw_left_out_rays(
 
     Parameters
     ----------
-    store : tables.ScanStore
-    registered : registered_scans.RegisteredScans
     chosen_ids : (k,) int
         The scans that the plan was made of.
     storey_z_m : (float, float)
         Heights of floor and ceiling in the map frame, NaN where not known.
     max_scans, max_rays : int, >= 1
-    seed : int
 
     Returns
     -------
@@ -67,7 +64,6 @@ def draw_rays(
 
     Parameters
     ----------
-    store : tables.ScanStore
     scan_ids : (s,) int, increasing
     sensors_m : (s, 3) float
         Map frame.
@@ -75,7 +71,6 @@ def draw_rays(
         Heights of floor and ceiling in the map frame, NaN where not known.
     max_rays : int
         Of all scans together, as many of each.
-    seed : int
     """
     random = np.random.default_rng(seed)
     of_each = max_rays // max(len(scan_ids), 1)

@@ -32,8 +32,6 @@ def measure_mirrored_share(plan: FloorPlan, rays: RaySet, track_m: FloatArray) -
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
-    rays : ray_set.RaySet
     track_m : (k, 2) float64
         Where the sensor was.
     """

@@ -91,8 +91,6 @@ def cast_rays(rays: RaySet, surfaces: DrawnSurfaces, tolerance_m: float) -> RayO
 
     Parameters
     ----------
-    rays : RaySet
-    surfaces : DrawnSurfaces
     tolerance_m : float, > 0
         How far a return at a surface may lie from it.
     """

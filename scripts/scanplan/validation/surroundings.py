@@ -83,7 +83,6 @@ def share_floor_beyond(
         How far to the left of each line the wall's one face lies, and its other.
     areas : (r,) object
         Shapely polygons of rooms.
-    floor : shapely geometry
     """
     way_m = lines_m[:, 1] - lines_m[:, 0]
     width_m = np.maximum(np.hypot(*way_m.T), SHORTEST_M)

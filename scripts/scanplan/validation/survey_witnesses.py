@@ -24,7 +24,6 @@ def measure_plan(
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     rays : ray_set.RaySet
         Of scans that it was not made of.
     xyz_m : (n, 3) float64
@@ -51,11 +50,6 @@ def measure_head_room(plan: FloorPlan, sensor_z_m: float) -> float:
     """Return the sensor's height as a share of the room's, 0 to 1.
 
     NaN where no ceiling was seen, or most doors stand on the floor that was seen: it is one.
-
-    Parameters
-    ----------
-    plan : floorplan.FloorPlan
-    sensor_z_m : float
     """
     openings = plan.openings
     is_door = openings["type"] == "door"
@@ -71,7 +65,6 @@ def measure_narrowest(plan: FloorPlan, track_m: FloatArray) -> float:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     track_m : (n, 2) float64
     """
     faces = line_shapes(centrelines_m(plan.faces))

@@ -55,10 +55,6 @@ def judge_plan(plan: FloorPlan) -> Verdict:
     It is none where a witness is beyond a limit that no plan of a building has, a sketch where one
     is that leaves measures or parts in doubt, or where less than half of the rooms, or of the
     floor, is closed.
-
-    Parameters
-    ----------
-    plan : floorplan.FloorPlan
     """
     findings = plan.doubted.findings
     worth = worth_left(findings)

@@ -79,8 +79,6 @@ def plan_visit(
         Read with its confidence.
     track_m : (n, 2) float64, n >= 1
         Where scans were taken, in the order of time, map frame.
-    reach : SensorReach
-    settings : VisitSettings
     """
     asked = questions.list_questions(plan, track_m)
     pieces = questions.cut_questions(asked)

@@ -43,7 +43,6 @@ def block_sight(plan: FloorPlan, height_m: float) -> BaseGeometry:
 
     Parameters
     ----------
-    plan : FloorPlan
     height_m : float
         Of the sensor above the floor: it looks over walls that end below. NaN: over none.
     """
@@ -68,11 +67,8 @@ def find_seen(
 
     Parameters
     ----------
-    views : Views
-    pieces : Pieces
     blocked : shapely geometry
         See `block_sight`.
-    reach : SensorReach
     """
     shapely.prepare(blocked)
     seen: list[IntArray] = [np.empty(0, np.int64)] * len(views.place_m)

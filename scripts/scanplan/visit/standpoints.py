@@ -19,7 +19,6 @@ def find_ground(plan: FloorPlan, track_m: FloatArray, clearance_m: float) -> Roa
 
     Parameters
     ----------
-    plan : FloorPlan
     track_m : (n, 2) float64, n >= 1
         Where scans were taken, in the order of time, map frame.
     clearance_m : float
@@ -54,7 +53,6 @@ class SettledQuestions(lazy_greedy.SingleGains):
     ----------
     seen : sequence of n (k,) int64
         Which pieces each view sees, increasing.
-    pieces : Pieces
     """
 
     def __init__(self, seen: Sequence[IntArray], pieces: Pieces) -> None:
@@ -81,7 +79,6 @@ def choose_views(seen: Sequence[IntArray], pieces: Pieces) -> list[int]:
     ----------
     seen : sequence of n (k,) int64
         Which pieces each view sees, increasing.
-    pieces : Pieces
     """
     if not any(map(len, seen)):
         return []

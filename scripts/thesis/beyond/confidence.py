@@ -98,7 +98,6 @@ class WallConfidence:
 
     Parameters
     ----------
-    n_cells : int
     sigma_m : float
         What the place of a single scan's wall may be off by.
     """
@@ -147,7 +146,6 @@ def order_by_confidence(
 
     Parameters
     ----------
-    views : CellViews
     extract : callable
         From the index of a chosen scan to its walls; called once for each.
     sigma_m : float
@@ -188,8 +186,6 @@ def measure_offsets(
     centre_m : (m, 2) float
     normal : (m, 2) float
         See `CellViews`.
-    walls : Walls
-    near_m : float
 
     Returns
     -------

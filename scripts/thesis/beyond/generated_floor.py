@@ -27,7 +27,6 @@ def draw_floor(n_rooms: int, seed: int) -> bytes:
     ----------
     n_rooms : int, >= 2
         Without hallways.
-    seed : int
 
     Returns
     -------

@@ -29,13 +29,10 @@ def measure_live_choice(
 
     Parameters
     ----------
-    survey : survey_findings.SurveyTruth
-    findings : wall_findings.Findings
     observed : dict of str to (m,) array
         The columns of `schemas.OBSERVATIONS`.
     orders : dict of str to (n,) int
         Rows by method.
-    shares : sequence of float
     max_cells : int
         See `playing.PlayingSelection`.
 

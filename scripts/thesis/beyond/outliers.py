@@ -84,7 +84,6 @@ def measure_outliers(
 
     Parameters
     ----------
-    survey : survey_findings.SurveyTruth
     findings : wall_findings.Findings
         Of the scans without outliers.
     scans : sequence of (int, (n, 3) float)
@@ -95,9 +94,6 @@ def measure_outliers(
         Scans that are chosen.
     sampling : dict
         Keywords of `hulls.make_cluster_hulls`.
-    visibility : visibility_polygon.VisibilitySettings
-    cells : wall_cells.WallCellSettings
-    seed : int
 
     Yields
     ------

@@ -67,10 +67,8 @@ def compare_budgets(
     ----------
     survey : survey_files.OpenedSurvey
         With the orders to compare.
-    search : wall_search.WallSearch
     sizes : sequence of int
         A budget is that of so many scans of the mean number of points.
-    seed : int
 
     Yields
     ------

@@ -101,8 +101,6 @@ def time_orders(
 
     Parameters
     ----------
-    survey : TimedSurvey
-    cells : wall_cells.WallCellSettings
     sampling : dict
         Keywords of `hulls.make_cluster_hulls`.
 
@@ -135,7 +133,6 @@ def time_to_quality(
 
     Parameters
     ----------
-    survey : TimedSurvey
     orders : dict of str to (float, (n,) int)
         As `time_orders` returns them.
     sizes : sequence of int, increasing

@@ -33,10 +33,8 @@ class SubsetRegistration:
 
     Parameters
     ----------
-    store : tables.ScanStore
     map_from_sensor : (n, 4, 4) float
         True poses of its scans, by row.
-    limits : registration_settings.SequentialSettings
     seed : int
         Of the localiser's errors.
     """
@@ -119,7 +117,6 @@ def measure_registrability(
 
     Parameters
     ----------
-    subsets : SubsetRegistration
     places_m : (n, 2) float
         Of the sensor at each scan.
     orders : dict of str to (n,) int

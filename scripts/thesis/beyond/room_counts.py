@@ -33,7 +33,6 @@ def count_first(found: BoolArray, length_m: FloatArray, order: IntArray, *, shar
         Which cells of the true walls each scan finds.
     length_m : (c,) float
     order : (n,) int
-    share : float
     """
     first = np.where(found.any(axis=0), found[order].argmax(axis=0), len(order))
     found_m = np.bincount(first, length_m, minlength=len(order) + 1)[: len(order)].cumsum()
@@ -57,8 +56,6 @@ def measure_floor(
         See `generated_floor.draw_floor`.
     simulation : dict
         Settings of `survey_setup.prepare_survey` and, as `site`, of `prepare_site`.
-    search : wall_search.WallSearch
-    cells : wall_cells.WallCellSettings
 
     Returns
     -------
@@ -115,11 +112,8 @@ def look_at_scans(
 
     Parameters
     ----------
-    survey : sweeps.SimulatedSurvey
     poses : (n, 4, 4) float
         The sensor's at its scans.
-    search : wall_search.WallSearch
-    cells : wall_cells.WallCellSettings
 
     Returns
     -------

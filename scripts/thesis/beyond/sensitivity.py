@@ -34,7 +34,6 @@ def measure_sensitivity(
         Inlier band and bandwidth of the mean shift among its settings.
     sampling : dict
         Keywords of `hulls.make_cluster_hulls`, with the size of the sample.
-    factors : sequence of float
 
     Yields
     ------
@@ -77,8 +76,6 @@ def judge_claims_of(
 
     Parameters
     ----------
-    survey : survey_findings.SurveyTruth
-    findings : wall_findings.Findings
     order : (n,) int
         Rows of all scans by cluster hulls.
     seed : int

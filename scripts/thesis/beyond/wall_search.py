@@ -76,7 +76,6 @@ def measure_walls(survey: SurveyTruth, findings: Findings, rows: IntArray) -> di
 
     Parameters
     ----------
-    survey : survey_findings.SurveyTruth
     findings : wall_findings.Findings
         Of its scans.
     rows : (k,) int

@@ -62,7 +62,6 @@ def oracle_columns(best: Mapping[str, OracleOrder], scans: RegisteredScans) -> C
     ----------
     best : dict of str to OracleOrder
         By extractor.
-    scans : registered_scans.RegisteredScans
     """
     n = len(scans.scan_ids)
     orders = [best[extractor] for extractor in sorted(best)]

@@ -50,7 +50,6 @@ def measure_orders(
 
     Parameters
     ----------
-    truth : wall_findings.VisibleTruth
     orders : dict of str to (m,) int
         Method to rows of scans, best first.
     drawn : dict of str to wall_findings.PlacedSegments

@@ -61,7 +61,6 @@ def match_walls(survey: SurveyTruth, walls: Columns, bitmap_cell_m: float) -> Fi
 
     Parameters
     ----------
-    survey : SurveyTruth
     walls : dict of str to (s,) array
         Columns of `schemas.WALLS`, of registered scans alone.
     bitmap_cell_m : float

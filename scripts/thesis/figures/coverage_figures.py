@@ -38,8 +38,6 @@ def draw_hulls_figure(
     ----------
     points_xy_m : (n, 2) float
     place_m : (2,) float
-    full, seen : shapely Polygon or MultiPolygon
-    clusters : sequence of shapely Polygon
 
     Returns
     -------
@@ -75,7 +73,6 @@ def draw_shares_figure(evaluated: Sequence[pd.DataFrame], extractor: str) -> Fig
     evaluated : sequence of pandas.DataFrame
         `schemas.EVALUATION`, one table per seed; drawn to as many scans as all have, linear between
         the numbers evaluated.
-    extractor : str
 
     Returns
     -------

@@ -24,7 +24,6 @@ def surviving_shares(gates: pd.DataFrame, reading: str) -> pd.DataFrame:
     ----------
     gates : pandas.DataFrame
         `thesis_schemas.GATES`.
-    reading : str
 
     Returns
     -------

@@ -117,7 +117,6 @@ def draw_overlay_figure(result_m: FloatArray, truth_m: FloatArray, cell_m: float
     ----------
     result_m, truth_m : (n, 2, 2) float
         Walls and true faces.
-    cell_m : float
 
     Returns
     -------

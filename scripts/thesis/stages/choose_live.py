@@ -21,10 +21,8 @@ def choose_live(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     observations, output : path-like
         observations.parquet; thesis/live_choice.parquet, to write.
-    shares : sequence of float
     max_cells : int
         See `playing.PlayingSelection`.
     """

@@ -21,7 +21,6 @@ def compare_budgets(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/budgets.parquet, to write.
     extraction : dict

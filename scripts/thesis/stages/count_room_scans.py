@@ -22,8 +22,6 @@ def count_room_scans(
     ----------
     output : path-like
         results/thesis/floors_<seed>.parquet, to write.
-    n_rooms : sequence of int
-    seed : int
     settings : dict
         `simulation`, `extraction` and `cells`: the settings of the survey, of cluster RANSAC, and
         of the wall that scans show.

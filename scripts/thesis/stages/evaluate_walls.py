@@ -41,7 +41,6 @@ def evaluate_walls(
         the orders that one who knows the truth would take. To write.
     max_range_m : float
         How far a scan can see.
-    bitmap_cell_m : float
     """
     scans = registered_scans.read_registered_scans(registration)
     poses = truth_file.read_true_poses(true_poses)

@@ -26,7 +26,6 @@ def measure_candidates(
         thesis/candidates.parquet, to write.
     walls : dict
         Of `thesis_ransac.ThesisIterativeSettings`.
-    n_scans : int
     """
     store = tables.ScanStore(scans)
     scan_ids = timing.spread_rows(store.scan_ids, n_scans)

@@ -44,7 +44,6 @@ def measure_coverage(
         `built`.
     max_range_m : float
         How far a scan can see.
-    threads : int
     """
     others = {name: value for name, value in sampling.items() if name != "n_clusters"}
     growth = coverage.cluster_growth_columns(scans, n_clusters, threads=threads, **others)

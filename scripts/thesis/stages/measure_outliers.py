@@ -25,15 +25,12 @@ def measure_outliers(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/outliers.parquet, to write.
     settings : dict
         `hulls`, `visibility` and `cells`: those of what scans cover.
-    shares : sequence of float
     n_scans, n_selected : int
         Scans, spread over the survey, to choose from, and those chosen.
-    seed : int
     """
     scans = list(survey.store.scans(spread_rows(survey.store.scan_ids, n_scans)))
     measured = outliers.measure_outliers(

@@ -23,7 +23,6 @@ def measure_premises(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/premises.parquet, to write.
     extraction : dict

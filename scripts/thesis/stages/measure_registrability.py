@@ -21,7 +21,6 @@ def measure_registrability(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/registrability.parquet, to write.
     registration : dict

@@ -21,7 +21,6 @@ def measure_sensitivity(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/sensitivity.parquet, to write.
     extraction, hulls : dict

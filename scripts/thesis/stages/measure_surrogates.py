@@ -30,7 +30,6 @@ def measure_surrogates(
     ----------
     covers : dict of str to path-like
         observations.parquet, visibility.parquet and hulls.parquet by their stems.
-    survey : survey_files.OpenedSurvey
     output : path-like
         thesis/surrogates.parquet, to write.
     n_added, seed : int

@@ -8,10 +8,9 @@ import numpy as np
 from scanplan.lab.evaluation import truth_file
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import results
 from scanplan.registration.registration_settings import SequentialSettings, registration_settings
 from scanplan.stage import log
-from scanplan.store import scan_cache, schemas, tables
+from scanplan.store import pose_columns, scan_cache, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, IntArray
 from thesis import gates, thesis_schemas
 
@@ -44,7 +43,7 @@ def sweep_gates(
     candidates = tables.read_table(poses, schemas.POSES)
     has_pose = candidates["covered"]
     scan_ids = candidates["scan_id"][has_pose]
-    priors = results.pose_matrices(candidates)[has_pose]
+    priors = pose_columns.pose_matrices(candidates)[has_pose]
     truth = truth_file.interpolate_true_poses(
         truth_file.read_true_poses(true_poses), candidates["t_ns"][has_pose], true_poses
     )

@@ -38,7 +38,6 @@ def tabulate_steps(
 
     Parameters
     ----------
-    recordings : list of path-like
     true_poses, registration, scans, built, selection : path-like
         truth_poses.tum (a pose per recorded scan), registration.parquet, scans.parquet,
         hulls.parquet and an ordering.

@@ -53,7 +53,6 @@ def time_stages(
         Extractor to its settings, among others.
     hulls : dict
         `sample_size`, `radius` and `seed` of `hulls.make_cluster_hulls`.
-    n_clusters : sequence of int
     timed_scans : int
         On how many scans, spread over the survey, extractors are timed; thinned scans on a part of
         these.

@@ -22,7 +22,6 @@ def time_to_quality(
 
     Parameters
     ----------
-    survey : survey_files.OpenedSurvey
     recording : list of path-like
         Benchmark files of the jobs from the recording to registered scans.
     output : path-like

@@ -22,7 +22,6 @@ def compose_sheets(
     ----------
     plans : sequence of FloorPlan, at least one
         From the lowest storey up.
-    facts : sequence of SheetFacts
     rotations_rad : sequence of (float or None)
         Of the storeys' map frames in the building's; None where that is not known: such a storey
         is turned to its own main walls.

@@ -58,7 +58,6 @@ def identify_elements(elements: Elements, known: Columns, name: str) -> list[str
 
     Parameters
     ----------
-    elements : Elements
     known : dict of str to (k,) array
         The columns of `schemas.KNOWN_ELEMENTS`.
     name : str

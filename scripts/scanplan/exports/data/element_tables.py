@@ -26,7 +26,6 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     ids : dict of str to sequence of str
         See `element_ids.ElementIds`.
 

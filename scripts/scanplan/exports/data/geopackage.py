@@ -74,7 +74,6 @@ def plan_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     rows : dict
         See `element_tables.tabulate_elements`.
     """

@@ -20,7 +20,6 @@ def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     rows : dict
         See `element_tables.tabulate_elements`.
 

@@ -65,7 +65,6 @@ def compose_sheet(
 
     Parameters
     ----------
-    plan : FloorPlan
     facts : SheetFacts, optional
         What the title block states beside the plan.
     turn_deg : float, optional

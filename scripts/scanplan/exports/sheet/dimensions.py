@@ -47,7 +47,6 @@ def dimension_facades(
 
     Parameters
     ----------
-    page : Page
     outline : shapely geometry
         All that is built, openings closed, on paper.
     reach : shapely geometry
@@ -58,7 +57,6 @@ def dimension_facades(
         Spans of rooms' outlines that were not seen, and walls that are to be verified, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
-    space : LabelSpace
     """
     openings = page.to_paper(openings_m).reshape(-1, 2, 2)
     for quarter in range(4):
@@ -264,11 +262,9 @@ def dimension_room(
 
     Parameters
     ----------
-    page : Page
     room, uncertain : shapely geometry
         Its outline, and what `dimension_facades` takes for uncertain, on paper: a length that ends
         there is about so long (`~`).
-    space : LabelSpace
     """
     for turn_deg in (0, -90):
         turn = rotation(turn_deg)

@@ -133,7 +133,6 @@ def choose_page(
     ----------
     low_m, high_m : (2,) float
         Least and greatest x and y of the turned plan.
-    turn_deg : float
     blocks : list of int
         Rows of the tables that go with it; see `fill_slots`.
     least_scale : int

@@ -35,7 +35,6 @@ def plan_building_route(
 
     Parameters
     ----------
-    site : Building
     source : path-like
         What errors name as their origin.
     route : str

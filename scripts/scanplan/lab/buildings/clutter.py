@@ -33,7 +33,6 @@ def add_clutter(
         On the whole floor; fewer where no place is left for them.
     doors_ajar : float, 0 to 1
         Share of the doors without a leaf in which one stands open; the others have none.
-    seed : int
     """
     generator = open_stream(seed, RandomStream.CLUTTER)
     way = overlays.buffer_shapes(LineString(site.waypoints_m), 1.2 * ROVER_RADIUS_M)

@@ -40,10 +40,6 @@ def make_building_mesh(plan: drawn_floor.DrawnFloor) -> Mesh:
     Floor and ceiling run through under and above the walls, so that no gap opens where they meet.
     Windows and doors are empty space (thesis, section 4.1), but for those that are drawn glazed.
 
-    Parameters
-    ----------
-    plan : drawn_floor.DrawnFloor
-
     Returns
     -------
     Mesh

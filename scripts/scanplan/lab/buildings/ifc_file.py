@@ -92,7 +92,6 @@ def parse_ifc(data: bytes, source: FilePath) -> IfcBuilding:
 
     Parameters
     ----------
-    data : bytes
     source : path-like
         What errors name as their origin.
 

@@ -32,7 +32,6 @@ def parse_mesh(
 
     Parameters
     ----------
-    data : bytes
     suffix : str
         `.stl`, `.obj` or `.ply`: the format.
     source : path-like

@@ -45,10 +45,8 @@ def hang_leaves(
 
     Parameters
     ----------
-    site : building.Building
     share : float, 0 to 1
         Of its doorways that get a leaf.
-    seed : int
     slice_height_m, planar
         See `building.load_building`.
     waypoints_m : (n, 2) float or None

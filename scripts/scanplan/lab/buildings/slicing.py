@@ -31,7 +31,6 @@ def cut_triangles(triangles_m: FloatArray, z_m: float) -> FloatArray:
     Parameters
     ----------
     triangles_m : (t, 3, 3) float64
-    z_m : float
 
     Returns
     -------

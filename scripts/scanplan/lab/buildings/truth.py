@@ -28,7 +28,6 @@ def truth_features(
 
     Parameters
     ----------
-    plan : drawn_floor.DrawnFloor
     slice_height_m : float
         Height above the floor at which wall faces are cut, the sensor's: an opening interrupts
         them where it is open at this height.

@@ -71,7 +71,6 @@ def trace_truth(faces_m: FloatArray, lines_m: FloatArray, cell_m: float) -> list
     faces_m : (n, 2, 2) float
     lines_m : (m, 2, 2) float
         All that is to be compared: the grids hold it and the faces.
-    cell_m : float
     """
     literal = bitmap.fit_grid(np.concatenate([faces_m, lines_m]), cell_m)
     grids = [literal, *shift_grid(literal)]
@@ -92,7 +91,6 @@ def measure_shares(drawn: DrawnCells, line_rank: IntArray, sizes: Sequence[int])
 
     Parameters
     ----------
-    drawn : DrawnCells
     line_rank : (n,) int
     sizes : (k,) sequence of int
 

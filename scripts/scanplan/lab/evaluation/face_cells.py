@@ -51,7 +51,6 @@ def cells_in_intervals(
 
     Parameters
     ----------
-    cells : FaceCells
     face : (p,) int
     low_m, high_m : (p,) float
         Along the face from its start.

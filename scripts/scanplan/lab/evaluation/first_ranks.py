@@ -41,10 +41,8 @@ def first_rank_found(found: CellRuns, segment_rank: IntArray, n_cells: int) -> I
 
     Parameters
     ----------
-    found : CellRuns
     segment_rank : (s,) int
         Rank of the scan that shows each segment.
-    n_cells : int
     """
     segment, begin, end = found
     rank = segment_rank[segment]

@@ -114,7 +114,6 @@ def compare_lines(result_m: ArrayLike, truth_m: ArrayLike, within_m: float) -> A
         May overlap each other: completeness counts true length once, correctness every resulting
         length.
     truth_m : (m, 2, 2) float
-    within_m : float
 
     Returns
     -------

@@ -27,7 +27,6 @@ def measure_doors(
     Parameters
     ----------
     drawn_m, true_m : (n, 2, 2), (m, 2, 2) float
-    rooms : list of shapely geometry
     visited : (r,) bool
 
     Returns

@@ -54,7 +54,6 @@ def measure_plan(
         As `read_plan_tables` returns it.
     motion : (4, 4) float
         Level rigid motion that the plan is moved by first.
-    true : true_plan.TruePlan
     floor : wall_findings.VisibleTruth
         The true faces, and what of them the survey and the chosen scans could see.
 
@@ -224,7 +223,6 @@ def measure_rooms(
 
     Parameters
     ----------
-    drawn, true : list of shapely geometry
     visited : (r,) bool
 
     Returns

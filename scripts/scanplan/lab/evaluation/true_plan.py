@@ -99,10 +99,6 @@ def _line(feature: Any) -> FloatArray:
 def join_touching(rooms: Sequence[BaseGeometry]) -> list[tuple[BaseGeometry, list[int]]]:
     """Join rooms that share an edge: a model may part a space in two where no wall stands.
 
-    Parameters
-    ----------
-    rooms : sequence of shapely geometry
-
     Returns
     -------
     list of (geometry, list of int)

@@ -144,7 +144,6 @@ def interpolate_true_poses(poses: TruePoses, t_ns: IntArray, path: FilePath) -> 
 
     Parameters
     ----------
-    poses : TruePoses
     t_ns : (n,) int64
     path : path-like
         What an error names as the origin of the poses.

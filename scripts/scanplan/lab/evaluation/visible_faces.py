@@ -57,11 +57,9 @@ def visible_cells(
 
     Parameters
     ----------
-    cells : FaceCells
     outer_m : (m, 2, 2) float
         Further faces that only occlude.
     position_m : (2,) float
-    max_range_m : float
     asked : (c,) bool, optional
         Cells to look for; by default all.
 

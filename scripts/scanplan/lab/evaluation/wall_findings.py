@@ -110,12 +110,10 @@ def observe_truth(
 
     Parameters
     ----------
-    faces : truth_file.TrueFaces
     placed : (n, 4, 4) float
         The true poses of the sensor at the registered scans.
     survey : (m, 4, 4) float
         Those at all scans of the survey.
-    sight : visible_faces.SensorView
     rooms : sequence of shapely geometry
         Those that the survey went into.
 
@@ -176,8 +174,6 @@ def match_segments(
 
     Parameters
     ----------
-    drawn : PlacedSegments
-    truth : VisibleTruth
     bitmaps : sequence of TrueBitmap
         As `bitmap_shares.trace_truth` gives them.
 
@@ -221,7 +217,6 @@ def cells_found_by_scan(found: CellRuns, scan: IntArray, shape: tuple[int, int])
 
     Parameters
     ----------
-    found : CellRuns
     scan : (s,) int
         The scan of each segment.
     shape : (n, c)

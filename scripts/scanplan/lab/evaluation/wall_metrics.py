@@ -30,7 +30,6 @@ def measure_first_scans(
 
     Parameters
     ----------
-    truth : wall_findings.VisibleTruth
     findings : wall_findings.Findings
         Of one extractor.
     rank : (n,) int
@@ -81,8 +80,6 @@ def measure_plan_lines(lines_m: FloatArray, truth: VisibleTruth, cell_m: float) 
     Parameters
     ----------
     lines_m : (n, 2, 2) float64
-    truth : wall_findings.VisibleTruth
-    cell_m : float
 
     Returns
     -------

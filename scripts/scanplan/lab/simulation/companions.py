@@ -26,9 +26,6 @@ def place_standing(
     ----------
     free : shapely geometry
         Floor without obstacles.
-    drive : rover.Drive
-    count : int
-    seed : int
 
     Returns
     -------
@@ -57,8 +54,6 @@ def follow_sensor(free: BaseGeometry, drive: rover.Drive, count: int) -> tuple[p
     ----------
     free : shapely geometry
         Floor without obstacles.
-    drive : rover.Drive
-    count : int
 
     Returns
     -------

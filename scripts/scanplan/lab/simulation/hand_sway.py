@@ -51,7 +51,6 @@ def draw_sway(
         Standard deviation over time of each direction's displacement, and of each angle.
     sway_hz : float
         Steps a second.
-    seed : int
 
     Returns
     -------

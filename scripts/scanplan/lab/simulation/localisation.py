@@ -85,7 +85,6 @@ def simulate_belief(
         What both know of level_from_base at the ticks: 6-DoF, as odometry of a hand-held device
         by its inertial unit, and the localiser then speaks at every tick. None where they are
         planar, and know nothing of it.
-    seed : int
     **error_settings
         As for `draw_pose_errors`.
 
@@ -147,7 +146,6 @@ def draw_start(
         Error of position and heading at the start.
     converge_m : float
         Way after which nothing is left of it.
-    seed : int
 
     Returns
     -------
@@ -224,7 +222,6 @@ def draw_pose_errors(
         Expected number of jumps a minute.
     max_jump_m : float
         A jump's length is even between 0 and this, its direction any.
-    seed : int
 
     Returns
     -------

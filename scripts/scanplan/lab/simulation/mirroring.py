@@ -22,7 +22,6 @@ def meet_mirrors(
         Where each ray ends, panes and people minded.
     opaque : raycast.MeshHits
         The mesh's first opaque surface along it.
-    generator : numpy Generator
 
     Returns
     -------
@@ -55,12 +54,9 @@ def return_images(
 
     Parameters
     ----------
-    rays : scan_rays.ScanRays
-    hits : raycast.RayHits
     is_mirrored : (n,) bool
     surface : raycast.MeshHits
         The pane or mirror that each of these rays meets.
-    scene : scan_rays.Scene
 
     Returns
     -------
@@ -88,7 +84,6 @@ def bend_rays(rays: ScanRays, ray: IntArray, way_m: FloatArray, normal: FloatArr
 
     Parameters
     ----------
-    rays : scan_rays.ScanRays
     ray : (k,) int
     way_m : (k,) float
         How far each comes to its mirror.

@@ -39,7 +39,6 @@ def integrate_odometry(
         Standard deviation of the length and of the heading after a metre of way.
     slips_per_m, max_slip_m, max_slip_deg : float
         As for `draw_slips`.
-    seed : int
     """
     generator = open_stream(seed, RandomStream.ODOMETRY)
     turn_scale, step_scale = 1 + scale_share * generator.standard_normal(2)
@@ -79,7 +78,6 @@ def draw_slips(
         Expected number of slips, a metre.
     max_m, max_deg : float
         Most way and turn of one slip; ways are forward, turns to either side.
-    seed : int
 
     Returns
     -------

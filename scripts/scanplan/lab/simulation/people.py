@@ -46,11 +46,8 @@ def simulate_walkers(
     ----------
     free : shapely geometry
         Floor without obstacles.
-    count : int
-    speed_m_s : float
     until_s : float
         How long they walk.
-    seed : int
 
     Returns
     -------

@@ -19,10 +19,6 @@ def find_returns(
 
     Parameters
     ----------
-    rays : scan_rays.ScanRays
-    scene : scan_rays.Scene
-    sensor : sensors.Sensor
-    errors : sensor_errors.SensorErrors
     seed, scan_id : int
         They determine all that is drawn.
 

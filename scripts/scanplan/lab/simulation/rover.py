@@ -45,7 +45,6 @@ def carry_in_hand(
 
     Parameters
     ----------
-    drive : Drive
     base_from_sensor : (4, 4) float64
     sway_m, sway_deg, sway_hz, seed
         As for `hand_sway.draw_sway`.

@@ -44,8 +44,6 @@ def encode_scans(
     Parameters
     ----------
     t_ns : (n,) int64
-    sensor : sensors.Sensor
-    scans : iterable of sweeps.SimulatedScan
 
     Yields
     ------

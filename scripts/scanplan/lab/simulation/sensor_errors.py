@@ -84,7 +84,6 @@ def draw_sensor_errors(
 
     Parameters
     ----------
-    sensor : Sensor
     bias_m : float
         Standard deviation of the beams' biases.
     grazing_from_deg, glass_return_deg, polished_from_deg, mixed_deg : float
@@ -93,7 +92,6 @@ def draw_sensor_errors(
         As in `SensorErrors`.
     bias_intensity_m, bias_incidence_m, stray_share
         As in `SensorErrors`.
-    seed : int
 
     Raises
     ------
@@ -134,12 +132,6 @@ def pass_glass(
     angle grid for glass environments", ICRA 2013. ASSUME that what is lost or mirrored is the same
     share at any angle, and that a ray that passes the first pane in its way passes all behind it:
     both faces of a pane are one decision.
-
-    Parameters
-    ----------
-    opaque, pane : raycast.RayHits
-    errors : SensorErrors
-    generator : numpy Generator
 
     Returns
     -------

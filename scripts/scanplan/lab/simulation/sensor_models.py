@@ -77,7 +77,8 @@ def make_sensor(
     if model == "laser":
         return sensors.make_laser(n_azimuth, field_deg, **common)
     if model == "rosette":
-        return sensors.make_rosette(_MID360_ELEVATIONS_DEG, n_azimuth, _MID360_LINES, **common)
+        level = sensors.make_lidar([0.0] * _MID360_LINES, n_azimuth, **common)
+        return sensors.make_rosette(level, _MID360_ELEVATIONS_DEG)
     if model == "vlp16":
         return make_vlp16(n_azimuth, **common)
     beams = {"ouster64": OS0_ELEVATIONS_DEG, "uneven32": VLP32C_ELEVATIONS_DEG}

@@ -101,7 +101,6 @@ def make_lidar(
         Turns a second.
     sweep : bool
         Whether the columns fire one after the other; otherwise all at the stamp.
-    min_range_m, max_range_m : float
     firing_order : sequence of int, optional
         The beams of a column in the order of their points; ascending by default.
 
@@ -139,7 +138,6 @@ def make_laser(
 
     Parameters
     ----------
-    n_beams : int
     field_deg : float
         From the first to the last beam; 360 for a whole turn, whose last beam is followed by the
         first.
@@ -168,46 +166,16 @@ def make_laser(
     )
 
 
-def make_rosette(
-    elevations_deg: tuple[float, float],
-    n_azimuth: int,
-    n_lines: int,
-    *,
-    rate_hz: float,
-    sweep: bool,
-    min_range_m: float,
-    max_range_m: float,
-) -> Sensor:
+def make_rosette(level: Sensor, elevations_deg: tuple[float, float]) -> Sensor:
     """Return a lidar whose few lines swing up and down while it turns, never twice the same way.
 
     Parameters
     ----------
+    level : Sensor
+        With these lines, all level: their swings are evenly spread in time.
     elevations_deg : (float, float)
         Lowest and highest that a line reaches.
-    n_azimuth : int
-        Columns per turn.
-    n_lines : int
-        Their swings are evenly spread in time.
-    rate_hz, sweep, min_range_m, max_range_m
-        As for `make_lidar`.
-
-    Returns
-    -------
-    Sensor
-
-    Raises
-    ------
-    ValueError
-        If there is no line or column, or no range between the limits.
     """
-    level = make_lidar(
-        [0.0] * n_lines,
-        n_azimuth,
-        rate_hz=rate_hz,
-        sweep=sweep,
-        min_range_m=min_range_m,
-        max_range_m=max_range_m,
-    )
     low_rad, high_rad = np.radians(elevations_deg).tolist()
     swinging = replace(level, rosette=Rosette(low_rad, high_rad, _COLUMNS_PER_SWING))
     return replace(swinging, direction=turn_directions(swinging, 0))

@@ -35,7 +35,6 @@ def track_poses(
         Standard deviation, after a metre of way, of the position on each axis and of the heading.
     loop_late_m : float
         Way from a place that was seen before to the correction.
-    seed : int
     """
     xy_m = world_from_base[:, :2, 3]
     step_m = np.hypot(*np.diff(xy_m, axis=0).T)
@@ -66,7 +65,6 @@ def find_loop(xy_m: FloatArray, way_m: FloatArray, now: int) -> int | None:
         True positions at the updates.
     way_m : (m,) float
         Way up to each.
-    now : int
     """
     n_old = int(np.searchsorted(way_m, way_m[now] - _LOOP_WAY_M, side="right"))
     if n_old <= 0:

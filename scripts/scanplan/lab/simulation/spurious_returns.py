@@ -37,14 +37,8 @@ def mix_edges(
 
     Parameters
     ----------
-    rays : scan_rays.ScanRays
-    hits : raycast.RayHits
     is_direct : (n,) bool
         Rays that meet an opaque surface or a person without a pane or mirror.
-    scene : scan_rays.Scene
-    sensor : sensors.Sensor
-    errors : sensor_errors.SensorErrors
-    generator : numpy Generator
 
     Returns
     -------

@@ -46,7 +46,6 @@ def encode_belief(start_ns: int, belief: Belief, *, localised: bool) -> list[Ite
     ----------
     start_ns : int
         When the drive starts.
-    belief : localisation.Belief
     localised : bool
         Whether there is a localiser.
 
@@ -162,7 +161,6 @@ def encode_transforms(
     ahead_ns : int
         How much later than its sending each is stamped, as AMCL stamps map to odom by its
         transform_tolerance.
-    topic : str
 
     Yields
     ------

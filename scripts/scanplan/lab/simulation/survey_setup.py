@@ -46,7 +46,6 @@ def prepare_site(
 
     Parameters
     ----------
-    data : bytes
     source : pathlib.Path
         The file that `data` is from.
     mount : dict
@@ -106,7 +105,6 @@ def prepare_survey(
     ----------
     site : building.Building
         With a way.
-    seed : int
     mount, sensor, errors, drive, people : dict
         Settings of `rover.mount_sensor`, `sensor_models.make_sensor`,
         `sensor_errors.draw_sensor_errors`, `plan_motion` and `invite_people`.
@@ -196,7 +194,6 @@ def survey_belief(
 
     Parameters
     ----------
-    survey : sweeps.SimulatedSurvey
     odometry : dict
         Settings of `odometry.integrate_odometry`.
     kind : {"amcl", "slam"}

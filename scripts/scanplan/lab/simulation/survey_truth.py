@@ -26,7 +26,6 @@ def mark_visible(
         `truth.truth_features` of a floor.
     poses : (m, 4, 4) float
         The sensor's at all scans, world_from_sensor.
-    sensor : visible_faces.SensorView
 
     Returns
     -------

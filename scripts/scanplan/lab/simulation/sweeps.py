@@ -65,7 +65,6 @@ def simulate_scans(survey: SimulatedSurvey, *, threads: int = 1) -> Iterator[Sim
 
     Parameters
     ----------
-    survey : SimulatedSurvey
     threads : int
         Processes that cast; the scans are the same for any number. No more than a few scans are
         held at a time.
@@ -92,10 +91,8 @@ def take_scan(survey: SimulatedSurvey, scene: raycast.RayScene, scan_id: int) ->
 
     Parameters
     ----------
-    survey : SimulatedSurvey
     scene : raycast.RayScene
         Of the survey's mesh.
-    scan_id : int
 
     Returns
     -------

@@ -99,7 +99,6 @@ class RunConsole(logging.Handler):
 
     Parameters
     ----------
-    terminal : Terminal
     datasets : iterable of str
         Names, for the width of their column.
     """
@@ -119,7 +118,6 @@ class RunConsole(logging.Handler):
 
         Parameters
         ----------
-        logger : logging.Logger
         when_idle : callable
             Called where there is nothing to be done.
         """

@@ -28,10 +28,6 @@ def keep_figures_ours(environ: MutableMapping[str, str]) -> None:
 def check_foreign_settings(environ: Mapping[str, str]) -> None:
     """Refuse to begin where a library could not be imported for a file that it reads then.
 
-    Parameters
-    ----------
-    environ : dict of str to str
-
     Raises
     ------
     StageError

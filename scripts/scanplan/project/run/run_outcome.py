@@ -41,7 +41,6 @@ def describe_failure(
 
     Parameters
     ----------
-    run : run_lock.FolderRun
     layers : dict of str to list of settings.Layer
         By name, the settings of all datasets whose stages could have run.
     causes : sequence of str, optional
@@ -83,8 +82,6 @@ def list_faults(name: str, run: FolderRun, layers: Sequence[Layer]) -> Iterator[
 
     Parameters
     ----------
-    name : str
-    run : run_lock.FolderRun
     layers : sequence of settings.Layer
         The settings of the dataset.
     """

@@ -132,10 +132,6 @@ def end_older_jobs(folder: Path) -> list[str]:
 
     The folder's lock is held: no other run of this host is at work here.
 
-    Parameters
-    ----------
-    folder : Path
-
     Returns
     -------
     list of str
@@ -166,7 +162,6 @@ def explain_ends(jobs: Sequence[SlurmJob], known: Sequence[str]) -> Iterator[str
 
     Parameters
     ----------
-    jobs : sequence of SlurmJob
     known : sequence of str
         Ids of jobs of earlier runs, which are left out.
     """

@@ -31,10 +31,6 @@ class Terminal:
 
     No mode of the terminal is changed, so that a killed run leaves nothing to be mended.
 
-    Parameters
-    ----------
-    stream : text file
-
     Attributes
     ----------
     in_place : bool

@@ -48,7 +48,6 @@ def unpack_bytes(data: bytes, size: int | None = None, *, form: str) -> bytes:
 
     Parameters
     ----------
-    data : bytes
     size : int, optional
         The number of bytes that it is to have, where the recording states it.
     form : str

@@ -78,7 +78,6 @@ def control_poses(time_s: FloatArray, t_ns: int, motion: SensorMotion) -> FloatA
     time_s : (n,) float64, n >= 1
     t_ns : int
         The scan's stamp.
-    motion : trajectory.SensorMotion
     """
     moments_s = np.linspace(time_s.min(), time_s.max(), _N_CONTROL_POSES)
     moments_ns = t_ns + np.round(moments_s * 1e9).astype(np.int64)
@@ -111,11 +110,6 @@ class DeskewedSurvey:
     A scan is left as recorded where its points carry no time, where their times cannot be those of
     one sweep, or where the sensor's motion is not known for all of its sweep and its stamp: motion
     is never extrapolated. Each is counted.
-
-    Parameters
-    ----------
-    survey : survey_protocol.Survey
-    motion : trajectory.SensorMotion
     """
 
     def __init__(self, survey: Survey, motion: SensorMotion) -> None:

@@ -89,7 +89,6 @@ def find_sweep_times(
     scans : iterable of (time_raw (n,) number or None, t_ns int)
     where : str
         What the scans are of, for the log.
-    units : collection of str
     """
     scans = list(scans)
     convention = find_time_convention(scans, units)

@@ -23,7 +23,6 @@ def find_pose_kind(msgtype: str, frame: str) -> str:
     ----------
     msgtype : str
         As `topics.Topic` has it.
-    frame : str
 
     Returns
     -------

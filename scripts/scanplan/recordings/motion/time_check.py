@@ -61,11 +61,6 @@ def list_time_readings(first_s: float, last_s: float) -> list[TimeReading]:
 def check_point_times(survey: Survey, motion: SensorMotion) -> SensorMotion:
     """Return the motion with the reading of points' times that makes the surfaces thinnest.
 
-    Parameters
-    ----------
-    survey : survey_protocol.Survey
-    motion : trajectory.SensorMotion
-
     Returns
     -------
     trajectory.SensorMotion
@@ -101,7 +96,6 @@ def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArra
     ----------
     t_ns : (n,) int64
         Stamps of the scans.
-    motion : trajectory.SensorMotion
 
     Returns
     -------
@@ -163,8 +157,6 @@ def choose_reading(
     ----------
     groups : list of list of clouds.Scan
         Neighbouring scans with times.
-    motion : trajectory.SensorMotion
-    planar : bool
 
     Returns
     -------

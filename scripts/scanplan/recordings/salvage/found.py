@@ -95,7 +95,6 @@ class FoundRecords:
 
         Parameters
         ----------
-        connection : int
         listed : set of (int, int)
             Time, and place in the part, of each message.
         """
@@ -152,12 +151,10 @@ def walk_records(
 
     Parameters
     ----------
-    found : FoundRecords
     take : callable
         Takes the record at a place, and returns where the next one begins.
     find_next : callable
         Returns the first place, from one on, at which a whole record begins; `end` if none.
-    begin, end : int
     """
     place = begin
     while place < end:

@@ -20,10 +20,6 @@ _INVALID = {_CARTESIAN: "cartesianInvalidState", _SPHERICAL: "sphericalInvalidSt
 def list_e57_stations(path: Path) -> list[Station]:
     """Return the scans of a file that have points.
 
-    Parameters
-    ----------
-    path : Path
-
     Raises
     ------
     StageError

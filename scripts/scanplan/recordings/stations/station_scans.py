@@ -49,7 +49,6 @@ class StationScans(UntimedScans):
     ----------
     where : str
         What they are from, for errors.
-    stations : list of Station
     **reading
         Keywords of `posed_scans.PosedScans`; by default the poses are surveyed.
 

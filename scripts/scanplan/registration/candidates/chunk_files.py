@@ -40,7 +40,6 @@ def write_chunk(files: ChunkFiles, found: RegisteredCandidates, thinned: ScanCac
 
     Parameters
     ----------
-    files : ChunkFiles
     found : registered_candidates.RegisteredCandidates
         The chunk's.
     thinned : scan_cache.ScanCache

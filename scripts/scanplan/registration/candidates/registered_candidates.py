@@ -14,7 +14,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import pose_kind, trajectory
 from scanplan.recordings.survey import open_survey
-from scanplan.registration import batches, mapping, results
+from scanplan.registration import batches, mapping
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.registration_settings import (
@@ -23,7 +23,7 @@ from scanplan.registration.registration_settings import (
 )
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log
-from scanplan.store import schemas, tables
+from scanplan.store import pose_columns, schemas, tables
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
 
@@ -77,13 +77,12 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
 
     Parameters
     ----------
-    poses : path-like
     planar : bool
         Whether the sensor measures in one plane only.
     """
     columns = tables.read_table(poses, schemas.POSES)
     is_odometry = pose_kind.is_drifting(tables.read_note(poses, schemas.POSES, pose_kind.NOTE))
-    priors = results.pose_matrices(columns)
+    priors = pose_columns.pose_matrices(columns)
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
 
 
@@ -132,7 +131,6 @@ def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> Dama
         Of the whole survey.
     reading : dict
         Keywords of `survey.open_survey`.
-    begin : int
     """
     return DamagedClouds(n_candidates, reading.get("max_damaged_share", 0.0), begin)
 
@@ -164,7 +162,6 @@ def register_recorded(
         As `workers.open_pool` gives it.
     reading : dict
         Keywords of `survey.open_survey`.
-    settings : registration_settings.RegistrationSettings
     moved : path-like, optional
         motion.parquet: how the sensor moved. Without it scans are not deskewed.
     chunk : str, optional

@@ -51,7 +51,6 @@ class LoopCloser:
         In the order of the way.
     way_m : (n,) float
         How far the sensor had come at each scan, with what breaks add (`measure_doubtful_way`).
-    drift : registration_settings.DriftSettings
     """
 
     def __init__(

@@ -44,7 +44,6 @@ def optimise_drifting_poses(
         As recorded.
     edges, thinned, run, planar, limits, settings
         As of `multiway.optimise_poses`.
-    drift : registration_settings.DriftSettings
     """
     graph = _DriftingGraph(
         scan_ids,

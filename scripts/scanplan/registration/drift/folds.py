@@ -23,7 +23,6 @@ def measure_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> Mea
 
     Parameters
     ----------
-    n_scans : int
     source, target : (m,) int
         Rows of the scans that an alignment ties together.
     """

@@ -94,7 +94,6 @@ def measure_steps(
     odometry_from_cloud : (n, 4, 4) float64
     edges : sequence of constraints.PoseConstraint
         From scans to those before them.
-    drift : registration_settings.DriftSettings
     """
     whole = [edge.source for edge in edges if edge.fit.n_unobservable == 0]
     is_whole = np.isin(scan_ids, whole)
@@ -126,7 +125,6 @@ def constrain_placed_scans(
         Of each scan's cloud the pose of the next one by odometry; NaN where it does not know.
     edges : sequence of constraints.PoseConstraint
         From these scans to those before them.
-    drift : registration_settings.DriftSettings
     planar : bool
         Whether only shifts in the plane are aligned.
     """

@@ -74,7 +74,6 @@ def find_submap(
 
     Parameters
     ----------
-    source, target : Submap
     target_from_source : (4, 4) float64
         The middle of the window.
     reach_m, turn_rad : float
@@ -125,7 +124,6 @@ def measure_contradiction(source: Submap, target: Submap, target_from_source: Fl
 
     Parameters
     ----------
-    source, target : Submap
     target_from_source : (4, 4) float64
         As they are placed.
     """

@@ -40,7 +40,6 @@ def cut_way(way_m: FloatArray, length_m: float) -> list[IntArray]:
     ----------
     way_m : (n,) float, not falling
         How far the sensor had come.
-    length_m : float
 
     Returns
     -------
@@ -80,7 +79,6 @@ def merge_scans(
     ----------
     rows : (k,) int
         Of the scans, among all.
-    clouds : sequence of k prepared_clouds.PreparedCloud
     world_from_cloud : (k, 4, 4) float64
     """
     from scipy.spatial import KDTree  # 0.3 s, and only poses that drift need it

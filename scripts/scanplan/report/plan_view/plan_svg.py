@@ -30,7 +30,6 @@ def growing_plan_svg(
 
     Parameters
     ----------
-    plan : floorplan.FloorPlan
     stretches : dict of str to (m,) array
         See `growth.cut_by_rank`.
     positions_m : (k, 2) float

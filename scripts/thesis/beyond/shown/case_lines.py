@@ -21,7 +21,6 @@ def draw_cases(axes: Axes, values: pd.DataFrame) -> None:
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
     values : pandas.DataFrame
         By level and survey, cases by columns; see `measurements.select_quantity`. What is no order
         of scans is dashed beside orders.

@@ -9,7 +9,6 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.lab.buildings.details.things import DrawnCeiling, Plane
-from scanplan.types import FloatArray
 
 
 def part_below(area: BaseGeometry, plane: Plane, other: Plane) -> BaseGeometry:
@@ -37,19 +36,6 @@ def part_below(area: BaseGeometry, plane: Plane, other: Plane) -> BaseGeometry:
 def low_ground(ceiling: DrawnCeiling, z_m: float) -> BaseGeometry:
     """Return the ground over which a ceiling's underside is lower than a height."""
     return part_below(ceiling.footprint_m, ceiling.underside, Plane(z_m))
-
-
-def ceiling_heights(
-    xy_m: FloatArray, ceilings: Sequence[DrawnCeiling], main_m: float
-) -> FloatArray:
-    """Return the height (n,) of the ceiling over places (n, 2), the main one at `main_m`."""
-    heights_m = np.full(len(xy_m), main_m)
-    points = shapely.points(xy_m)
-    for ceiling in ceilings:
-        is_under = shapely.covers(ceiling.footprint_m, points)
-        under_m = np.where(is_under, ceiling.underside.heights(xy_m), np.inf)
-        heights_m = np.minimum(heights_m, under_m)
-    return heights_m
 
 
 def ceiling_range(

@@ -39,7 +39,6 @@ def attribute_cells(scene: Scene, cells: FaceCells) -> IntArray:
 
     Parameters
     ----------
-    scene : scene.Scene
     cells : face_cells.FaceCells
         Of drawn lines.
     """
@@ -71,7 +70,6 @@ def judge_lines(cells: FaceCells, kind: IntArray, right_share: float) -> tuple[A
 
     Parameters
     ----------
-    cells : face_cells.FaceCells
     kind : (c,) int
         As `attribute_cells` returns it.
     right_share : float

@@ -89,7 +89,6 @@ def fit_motion(lines_m: FloatArray, scene: Scene) -> FloatArray:
     ----------
     lines_m : (n, 2, 2) float
         Of the plan, in its own frame.
-    scene : scene.Scene
 
     Returns
     -------

@@ -37,7 +37,6 @@ def score_plan(
         The plan's tables, see `drawn_plan.place_plan`.
     motion : (4, 4) float
         Level rigid motion from the plan's frame to the truth's.
-    truth : scene.Scene
     seen : sight.Sight, optional
         What the survey could see; by default all.
     confidence : dict of str to (n,) array, optional

@@ -64,7 +64,6 @@ def score_rooms(
     Parameters
     ----------
     rooms : (d,) object
-    scene : scene.Scene
     number : (d,) int, optional
         Their numbers; by default their rows.
     height_m : (d,) float, optional

@@ -59,10 +59,8 @@ def observe_scene(
 
     Parameters
     ----------
-    scene : scene.Scene
     poses : (p, 4, 4) float
         Where the sensor truly was at all scans of the survey.
-    view : visible_faces.SensorView
     points_m : (k, 2 or 3) float, optional
         Registered points in the frame of the truth, those of floor and ceiling left out. With them
         leaves and columns count that points lie on; else those that could be seen.

@@ -1,0 +1,1 @@
+"""A floor plan of arrays, for programs that hold their scans."""
