@@ -3,6 +3,7 @@
 Faces, walls, openings and rooms, each drawn once.
 """
 
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.model import fronts
 from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log, witnesses, workers
@@ -67,8 +69,12 @@ def assemble_plan(
     wait_for_rays = workers.begin_in_thread(
         _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
     )
-    find_seen = None
+    find_seen = find_dense = None
     if store.planar:
+        dense_ids = registered.scan_ids[fronts.choose_scans(poses[:, :2, 3])]
+        find_dense = functools.partial(
+            *(ray_set.gather_rays, store.scans(dense_ids), sensors_m), planar=True, threads=threads
+        )
         retained = store.scans(registered.scan_ids)
         find_seen = workers.begin_in_thread(
             free_space.find_seen_floor, retained, sensors_m, threads=threads
@@ -84,6 +90,7 @@ def assemble_plan(
             poses[rows, :3, 2],
             registered.covariance[rows],
             find_seen=find_seen,
+            find_dense=find_dense,
             threads=threads,
         )
     messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)

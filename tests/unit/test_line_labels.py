@@ -28,6 +28,7 @@ N_ROWS = len(ROWS_M) - 1
 SQUARE, OBLIQUE = 0, 1
 CEILING_M = 2.5
 KINDS = range(len(priors.KINDS))
+LINES = (priors.INNER, priors.OUTER, priors.FRONT, priors.ROW)
 
 
 def wall(length_m, top_m=CEILING_M, n=3.0):
@@ -46,8 +47,8 @@ def put(ends, along_m, heights_m, witnesses):
         ends[columns, rows, incidence, end] = n
 
 
-def label(ends, *, is_outer=False, **more):
-    return label_line(SurfaceCounts(0.0, ends), is_outer=is_outer, **more)
+def label(ends, *, line=priors.INNER, **more):
+    return label_line(SurfaceCounts(0.0, ends), line=line, **more)
 
 
 def spans(stretches):
@@ -67,7 +68,7 @@ class TestByHand:
         ends = wall(4)
         pane = {(SQUARE, FACE): 1, (OBLIQUE, BEYOND): 1.5, (OBLIQUE, LOST): 0.5}
         put(ends, (1.0, 2.2), (0.9, 2.1), pane)
-        found = label(ends, is_outer=True)
+        found = label(ends, line=priors.OUTER)
         assert spans(found) == [("solid", 0, 1), ("window", 1, 2.2), ("solid", 2.2, 4)]
         assert (found[1].sill_m, found[1].lintel_m) == pytest.approx((0.9, 2.1))
         assert found[1].p > 0.95
@@ -90,7 +91,7 @@ class TestByHand:
         """Over all of it rays leave the room; no lintel was seen."""
         ends = wall(2, top_m=0.9)
         put(ends, (0, 2), (0.9, 1.9), {(OBLIQUE, BEYOND): 2, (OBLIQUE, LOST): 1})
-        (found,) = label(ends, is_outer=True)
+        (found,) = label(ends, line=priors.OUTER)
         assert found.kind == "low" and found.lintel_m == pytest.approx(0.9)
 
     def test_a_way_to_the_next_wall_is_a_door_only_under_a_lintel(self):
@@ -127,7 +128,7 @@ class TestByHand:
         ends = wall(6)
         pane = {(SQUARE, FACE): 1, (OBLIQUE, BEYOND): 1.5, (OBLIQUE, DEEP): 0.5}
         put(ends, (1.5, 4.5), (0, CEILING_M), pane)
-        found = label(ends, is_outer=True)
+        found = label(ends, line=priors.OUTER)
         assert spans(found) == [("solid", 0, 1.5), ("glass", 1.5, 4.5), ("solid", 4.5, 6)]
 
     def test_a_gap_of_90_cm_in_the_plane_is_a_door(self):
@@ -176,16 +177,16 @@ def blocks(draw):
     return np.concatenate(parts)
 
 
-def enumerate_ways(ends, *, is_outer, goes_on):
+def enumerate_ways(ends, *, line, goes_on):
     """Return all ways to part a line, and what they are made of."""
-    labels = priors.list_labels(ends.shape[1])
+    labels = priors.list_labels(ends.shape[1], line=line)
     likely = line_labels.weigh_columns(SurfaceCounts(0.0, ends), labels).tolist()
     own = list(zip(labels.kind.tolist(), labels.log_prior.tolist(), strict=True))
     known = {
-        "begins": priors.log_ends(is_outer=is_outer, goes_on=goes_on[0]).tolist(),
-        "ends": priors.log_ends(is_outer=is_outer, goes_on=goes_on[1]).tolist(),
-        "change": priors.log_change(is_outer=is_outer).tolist(),
-        "length": priors.log_lengths(len(ends)).tolist(),
+        "begins": priors.log_ends(line=line, goes_on=goes_on[0]).tolist(),
+        "ends": priors.log_ends(line=line, goes_on=goes_on[1]).tolist(),
+        "change": priors.log_change(line=line).tolist(),
+        "length": priors.log_lengths(len(ends), line=line).tolist(),
     }
     ways = list(literal.list_ways(literal.find_cuts(likely), likely, own, known))
     return ways, likely, own, labels
@@ -196,11 +197,11 @@ GOES_ON = st.tuples(st.booleans(), st.booleans())
 
 class TestAgainstAllWays:
     @settings(max_examples=60)
-    @given(blocks(), st.booleans(), GOES_ON)
-    def test_the_best_way_and_its_heights_are_those_of_all_ways(self, ends, is_outer, goes_on):
-        ways, likely, own, labels = enumerate_ways(ends, is_outer=is_outer, goes_on=goes_on)
+    @given(blocks(), st.sampled_from(LINES), GOES_ON)
+    def test_the_best_way_and_its_heights_are_those_of_all_ways(self, ends, line, goes_on):
+        ways, likely, own, labels = enumerate_ways(ends, line=line, goes_on=goes_on)
         best, _ = max(ways, key=lambda way: way[0])
-        found = label(ends, is_outer=is_outer, goes_on=goes_on)
+        found = label(ends, line=line, goes_on=goes_on)
         columns = [(round(s.low_m / 0.05), round(s.high_m / 0.05), s) for s in found]
         stretches = [(begin, end, priors.KINDS.index(s.kind)) for begin, end, s in columns]
         # of two that weigh the same either is best
@@ -212,23 +213,25 @@ class TestAgainstAllWays:
             assert (stretch.sill_m, stretch.lintel_m) == pytest.approx(heights_m, nan_ok=True)
 
     @settings(max_examples=60)
-    @given(blocks(), st.booleans(), GOES_ON)
-    def test_probabilities_of_kinds_are_those_of_all_ways(self, ends, is_outer, goes_on):
-        ways, likely, _, labels = enumerate_ways(ends, is_outer=is_outer, goes_on=goes_on)
+    @given(blocks(), st.sampled_from(LINES), GOES_ON)
+    def test_probabilities_of_kinds_are_those_of_all_ways(self, ends, line, goes_on):
+        ways, likely, _, labels = enumerate_ways(ends, line=line, goes_on=goes_on)
         shares = np.array(literal.kind_shares(ways, len(ends), len(KINDS)))
-        chain = line_labels._Chain(labels, np.array(likely), is_outer=is_outer, goes_on=goes_on)
+        chain = line_labels._Chain(labels, np.array(likely), line=line, goes_on=goes_on)
         assert chain.cuts.tolist() == literal.find_cuts(likely)
         between = chain.kind_shares()
         np.testing.assert_allclose(between.sum(axis=1), 1)
         np.testing.assert_allclose(between, shares[chain.cuts[:-1]], atol=1e-9)
-        for stretch in label(ends, is_outer=is_outer, goes_on=goes_on):
+        whole = literal.add([weight for weight, _ in ways])
+        assert chain.evidence == pytest.approx(whole, rel=1e-9, abs=1e-9)
+        for stretch in label(ends, line=line, goes_on=goes_on):
             begin, end = round(stretch.low_m / 0.05), round(stretch.high_m / 0.05)
             kind = priors.KINDS.index(stretch.kind)
             assert stretch.p == pytest.approx(shares[begin:end, kind].mean(), abs=1e-9)
 
-    @given(blocks(), st.booleans())
-    def test_stretches_follow_one_another_from_end_to_end(self, ends, is_outer):
-        found = label(ends, is_outer=is_outer)
+    @given(blocks(), st.sampled_from(LINES))
+    def test_stretches_follow_one_another_from_end_to_end(self, ends, line):
+        found = label(ends, line=line)
         ends_m = [(s.low_m, s.high_m) for s in found]
         assert ends_m[0][0] == 0 and ends_m[-1][1] == pytest.approx(0.05 * len(ends))
         assert all(one[1] == two[0] for one, two in pairwise(ends_m))
@@ -236,23 +239,25 @@ class TestAgainstAllWays:
 
 
 class TestPriors:
+    @pytest.mark.parametrize("line", LINES)
     @pytest.mark.parametrize("n_rows", [1, N_ROWS])
-    def test_of_each_kind_heights_are_likely_one_in_all(self, n_rows):
-        labels = priors.list_labels(n_rows)
+    def test_of_each_kind_heights_are_likely_one_in_all(self, n_rows, line):
+        labels = priors.list_labels(n_rows, line=line)
         for kind in np.unique(labels.kind):
             assert np.exp(labels.log_prior[labels.kind == kind]).sum() == pytest.approx(1)
         assert (labels.states.sum(axis=2) == 1).all()
 
-    @pytest.mark.parametrize("is_outer", [False, True])
-    def test_something_follows_each_kind_and_is_at_the_ends(self, is_outer):
-        np.testing.assert_allclose(np.exp(priors.log_change(is_outer=is_outer)).sum(axis=1), 1)
+    @pytest.mark.parametrize("line", LINES)
+    def test_something_follows_each_kind_and_is_at_the_ends(self, line):
+        np.testing.assert_allclose(np.exp(priors.log_change(line=line)).sum(axis=1), 1)
         for goes_on in (False, True):
-            ends = priors.log_ends(is_outer=is_outer, goes_on=goes_on)
+            ends = priors.log_ends(line=line, goes_on=goes_on)
             assert np.exp(ends).sum() == pytest.approx(1)
 
-    def test_lengths_of_a_kind_are_likely_one_in_all(self):
+    @pytest.mark.parametrize("line", LINES)
+    def test_lengths_of_a_kind_are_likely_one_in_all(self, line):
         """Columns of 5 cm sum a density of the length to within some percent."""
-        whole = np.exp(priors.log_lengths(2000)).sum(axis=1)
+        whole = np.exp(priors.log_lengths(2000, line=line)).sum(axis=1)
         np.testing.assert_allclose(whole, 1, atol=0.05)
 
     def test_a_cell_that_nothing_was_seen_of_speaks_for_no_state(self):

@@ -16,6 +16,7 @@ from scanplan.plan.model.surface_counts import (
     DEEP,
     FACE,
     LOST,
+    N_ENDS,
     SHALLOW,
     Side,
     count_ends,
@@ -72,7 +73,7 @@ def test_a_ray_counts_where_it_meets_the_wall_not_where_it_ends():
 def test_middles_are_those_of_the_columns():
     counts = count_ends(rays((SENSOR, [])), NORTH, 3.0, 3.12, [Side(NORTH, 0.24, ALL)])
     np.testing.assert_allclose(counts.middles_m, [3.025, 3.075, 3.125])
-    assert counts.ends.shape == (3, 20, 2, 5) and not counts.ends.any()
+    assert counts.ends.shape == (3, 20, 2, N_ENDS) and not counts.ends.any()
 
 
 class TestWitnesses:

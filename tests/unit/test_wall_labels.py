@@ -14,7 +14,7 @@ from helpers.label_making import (
     with_hole,
 )
 from scanplan.plan.model import things
-from scanplan.plan.model.surface_counts import BEYOND, FACE, SHALLOW, add_passages
+from scanplan.plan.model.surface_counts import BEYOND, FACE, PASSED, SHALLOW, add_passages
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.model.wall_labels import count_wall, label_wall
 
@@ -134,7 +134,7 @@ class TestWaysThrough:
     def test_where_a_sensor_was_carried_through_it_is_free(self):
         counts, added = self.look([(1.5, 1.0), (1.5, 0.3), (1.5, -0.9), (3.0, -0.9)])
         is_way = np.abs(counts.middles_m - 1.5) < 0.2
-        assert (added[is_way, BEYOND] > 0).all() and (added[~is_way] == 0).all()
+        assert (added[is_way, PASSED] > 0).all() and (added[~is_way] == 0).all()
 
     @pytest.mark.parametrize(
         "track_m", [[(1.5, 3.0), (1.5, -3.0)], [(0.0, 0.1), (1.4, -0.1)], [(1.5, 2.0), (1.5, 1.0)]]

@@ -19,6 +19,7 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
@@ -148,6 +149,7 @@ def make_plan(
     covariance: FloatArray | None = None,
     *,
     find_seen: Callable[[], BaseGeometry] | None = None,
+    find_dense: Callable[[], RaySet] | None = None,
     threads: int = 1,
 ) -> Plan:
     """Make a plan.
@@ -172,6 +174,9 @@ def make_plan(
     find_seen : callable, optional
         Returns the floor that planar scans saw, those that were not chosen, too: rooms are made of
         it. By default it is what the chosen ones saw.
+    find_dense : callable, optional
+        Returns the rays of planar scans from all along the way, chosen or not, see
+        `fronts.choose_scans`: panes are found by them. By default they are the chosen ones'.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -192,7 +197,12 @@ def make_plan(
     find_free = workers.begin_in_thread(
         *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
     )
-    survey = _Survey(settings, rays, track_m, find_free, find_seen, threads)
+    dense = rays
+    if find_dense is not None:
+        dense = find_dense()
+        plumb = np.tile((0.0, 0.0, 1.0), (len(dense.scan_ids), 1))
+        dense = range_bias.remove_range_bias(dense, errors_m, plumb, threads)
+    survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
@@ -241,8 +251,8 @@ class _Surfaces:
         How thick a wall is taken to be of which one side was seen.
     furnished : list of shapely geometry
         Ground behind fronts of furniture and under leaves of doors, of planar scans.
-    leaves : list of leaves.Leaf
-        Of open doors, of planar scans.
+    ways_m : list of (2, 2) float64
+        Doors, from jamb to jamb: in fronts of glass, and where leaves stand open in planar scans.
     open_leaves_m : list of (2, 2) float64
         The surfaces of open leaves that labels tell from walls, from end to end.
     n_lines, n_dropped : int
@@ -254,7 +264,7 @@ class _Surfaces:
     tops_m: list[float]
     unpaired_m: float
     furnished: list[BaseGeometry]
-    leaves: list[Leaf]
+    ways_m: list[FloatArray]
     open_leaves_m: list[FloatArray]
     n_lines: int
     n_dropped: int
@@ -281,8 +291,8 @@ class _Survey:
     Attributes
     ----------
     settings : PlanSettings
-    rays : ray_set.RaySet
-        Their ranges set right.
+    rays, dense : ray_set.RaySet
+        Of the chosen scans, and those that panes are found by, their ranges set right.
     track_m : (k, 2) float64
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
@@ -293,6 +303,7 @@ class _Survey:
 
     settings: PlanSettings
     rays: RaySet
+    dense: RaySet
     track_m: FloatArray
     find_free: Callable[[], _Free]
     find_seen: Callable[[], BaseGeometry] | None
@@ -330,8 +341,11 @@ class _Survey:
             max_opening_m=self.settings.openings.max_opening_m,
             max_door_m=self.settings.openings.max_door_m,
         )
+        glass = find_fronts(labelled.walls, self.dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(
-            labelled.walls, traced.panes, min_length_m=min_width_m, unpaired_m=unpaired_m
+            *(labelled.walls, [*traced.panes, *glass.panes]),
+            min_length_m=min_width_m,
+            unpaired_m=unpaired_m,
         )
         walls, tops_m = self._leave_out_columns(
             *(labelled.walls, labelled.tops_m, glass_walls, unpaired_m)
@@ -342,7 +356,7 @@ class _Survey:
             tops_m=tops_m,
             unpaired_m=unpaired_m,
             furnished=furnished,
-            leaves=leaves,
+            ways_m=[*(leaf.way_m for leaf in leaves), *glass.ways_m],
             open_leaves_m=labelled.leaves_m,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
@@ -423,7 +437,7 @@ class _Survey:
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,
-            ways_m=[leaf.way_m for leaf in surfaces.leaves],
+            ways_m=surfaces.ways_m,
             hidden=free_space.difference_on_grid(floor, self.seen) if self.rays.planar else None,
         )
         rooms = find_rooms(

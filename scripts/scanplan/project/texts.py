@@ -40,7 +40,6 @@ def fold_line(line: str, *, indent: int = 4, width: int = CONSOLE_WIDTH) -> list
 
     Parameters
     ----------
-    line : str
     indent : int
         Spaces that all but the first line begin with.
     width : int
@@ -62,7 +61,6 @@ def cut_line(text: str, width: int) -> str:
 
     Parameters
     ----------
-    text : str
     width : int
         Characters; a width below 20 counts as 20.
     """

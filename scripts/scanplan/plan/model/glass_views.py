@@ -24,7 +24,7 @@ def find_glass_shares(walls: Sequence[PlanWall], rays: RaySet) -> FloatArray:
         With the kinds of their openings.
     rays : ray_set.RaySet
     """
-    panes = [(number, pane) for number, wall in enumerate(walls) for pane in _draw_panes(wall)]
+    panes = [(number, pane) for number, wall in enumerate(walls) for pane in draw_panes(wall)]
     tree = shapely.STRtree([pane for _, pane in panes])
     owner = np.array([number for number, _ in panes], np.int64)
     shares = np.zeros(len(walls))
@@ -36,7 +36,7 @@ def find_glass_shares(walls: Sequence[PlanWall], rays: RaySet) -> FloatArray:
     return shares
 
 
-def _draw_panes(wall: PlanWall) -> list[shapely.LineString]:
+def draw_panes(wall: PlanWall) -> list[shapely.LineString]:
     """Return the windows and panes of a wall."""
     through = [opening for opening in wall.openings if opening.kind in ("window", "glass")]
     return [

@@ -53,7 +53,7 @@ class Stretch:
 def label_line(
     counts: SurfaceCounts,
     *,
-    is_outer: bool,
+    line: int,
     goes_on: tuple[bool, bool] = (False, False),
     crossed_m: FloatArray = NOWHERE_M,
 ) -> list[Stretch]:
@@ -62,17 +62,17 @@ def label_line(
     Parameters
     ----------
     counts : surface_counts.SurfaceCounts
-    is_outer : bool
-        Whether one side of it was seen alone: it may be a facade.
+    line : int
+        What it is: `priors.INNER`, `OUTER` or `FRONT`.
     goes_on : (bool, bool)
         Whether it begins, and ends, beyond what was seen of it, at the next wall.
     crossed_m : (n, 2) float64, optional
         From where to where other walls cross it.
     """
-    labels = priors.list_labels(counts.ends.shape[1])
+    labels = priors.list_labels(counts.ends.shape[1], line=line)
     likely = weigh_columns(counts, labels)
     crossed = (crossed_m - counts.first_m) / COLUMN_M
-    chain = _Chain(labels, likely, is_outer=is_outer, goes_on=goes_on, crossed=crossed)
+    chain = _Chain(labels, likely, line=line, goes_on=goes_on, crossed=crossed)
     shares = chain.kind_shares()
     stretches = []
     for begin, end, label in chain.best_path():
@@ -90,6 +90,13 @@ def label_line(
             )
         )
     return stretches
+
+
+def weigh_line(counts: SurfaceCounts, *, line: int) -> float:
+    """Return how likely it is that a line is of some kind, given its counts, log."""
+    labels = priors.list_labels(counts.ends.shape[1], line=line)
+    chain = _Chain(labels, weigh_columns(counts, labels), line=line, goes_on=(False, False))
+    return chain.evidence
 
 
 def is_between(places: FloatArray | IntArray, spans: FloatArray) -> BoolArray:
@@ -120,20 +127,20 @@ class _Chain:
         labels: priors.Labels,
         likely: FloatArray,
         *,
-        is_outer: bool,
+        line: int,
         goes_on: tuple[bool, bool],
         crossed: FloatArray = NOWHERE_M,
     ):
         self.cuts = _find_cuts(likely)
         self._labels = labels
-        self._change = priors.log_change(is_outer=is_outer)
+        self._change = priors.log_change(line=line)
         self._begin, self._end = (
-            priors.log_ends(is_outer=is_outer, goes_on=goes_on_here) for goes_on_here in goes_on
+            priors.log_ends(line=line, goes_on=goes_on_here) for goes_on_here in goes_on
         )
         self._score = np.vstack([np.zeros(likely.shape[1]), np.cumsum(likely, axis=0)])[self.cuts]
         self._n = len(self.cuts) - 1
         self._rows = [np.flatnonzero(labels.kind == kind) for kind in range(_N_KINDS)]
-        of_length = priors.log_lengths(int(self.cuts[-1]))
+        of_length = priors.log_lengths(int(self.cuts[-1]), line=line)
         self._is_crossed = is_between(self.cuts, crossed)
         # of each end, the score of every kind from every begin, (b, k)
         self._inner = [self._score_kinds(end, of_length) for end in range(1, self._n + 1)]
@@ -159,6 +166,11 @@ class _Chain:
             entry[end] = add(ended[end][:, None] + self._change, axis=0)
         ended[self._n] += self._end
         return entry, ended
+
+    @property
+    def evidence(self) -> float:
+        """How likely all ways to part the line make it together, log."""
+        return float(np.logaddexp.reduce(self._forward(np.logaddexp.reduce)[1][self._n]))
 
     def best_path(self) -> list[tuple[int, int, int]]:
         """Return begin, end and label of the best stretches, in order, by numbers of cuts."""

@@ -4,6 +4,7 @@ Scans of one place see the same with the same errors: what they say of a cell is
 whatever the number of their rays. Planar scans have one row of heights.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,11 +25,13 @@ ROWS_M = np.arange(1, 43, 2) / 10
 """Edges of the rows of heights: of beams 2 degrees apart two meet 0.2 m at 3 m."""
 AT_M = 0.04
 """Returns this near to a face are at it: three times what they scatter by."""
-FACE, SHALLOW, DEEP, BEYOND, LOST = range(5)
-"""How a ray ends: at the face, a little behind it, in the wall's depth, beyond, or nowhere."""
-N_ENDS = 5
+FACE, SHALLOW, DEEP, BEYOND, LOST, PASSED = range(6)
+"""How a ray ends: at the face, a little behind it, in the wall's depth, beyond, or nowhere; and
+where the sensor was carried through."""
+N_ENDS = 6
+SQUARE = math.tan(math.radians(10))
+"""A pane answers no farther from square: beams of 3 mrad on glass."""
 _SHALLOW_M = 0.12  # leaves of doors hang no deeper, panes and the far sides of reveals do
-_SQUARE = np.tan(np.radians(10))  # a pane answers no farther from square: beams of 3 mrad on glass
 _CARRIER_M = 0.4  # width of the slimmest robots and people that carry a sensor
 _PLACE_M = 0.5  # scans no farther apart are one place: what they see differs by less than a door
 
@@ -60,7 +63,7 @@ class SurfaceCounts:
     ----------
     first_m : float
         Where the first column begins along the wall's line.
-    ends : (c, r, 2, 5) float64
+    ends : (c, r, 2, 6) float64
         Of each column and row of height, of rays that come square and of others: how many places
         say that they end so.
     """
@@ -144,7 +147,7 @@ def add_passages(
         high_m = float(np.median(rays.sensors_m[:, 2])) - rays.ground_z_m
         n_rows = int(np.searchsorted(ROWS_M[1:], high_m, "right"))
     ends = counts.ends.copy()
-    ends[is_free, :n_rows, 1, BEYOND] += 1.0
+    ends[is_free, :n_rows, 1, PASSED] += 1.0
     return SurfaceCounts(counts.first_m, ends)
 
 
@@ -223,7 +226,7 @@ def _is_square(rays: RaySet, face: FaceRays) -> BoolArray:
     up_m = np.zeros(len(away_m))
     if not rays.planar:
         up_m = face.height_m + rays.ground_z_m - rays.sensors_m[face.scan, 2]
-    return np.hypot(away_m, up_m) <= _SQUARE * np.abs(face.views.side_m).take(face.view)
+    return np.hypot(away_m, up_m) <= SQUARE * np.abs(face.views.side_m).take(face.view)
 
 
 def _is_asked(side: Side, grid: _Grid) -> BoolArray:

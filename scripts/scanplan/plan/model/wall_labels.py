@@ -9,7 +9,7 @@ import numpy as np
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.model import line_ends, line_labels, opening_edges, surface_counts
+from scanplan.plan.model import line_ends, line_labels, opening_edges, priors, surface_counts
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
 from scanplan.plan.openings import CLOSED, Opening
@@ -19,7 +19,8 @@ from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
 
-_DEEP_M = 0.4  # behind a face whose other side nobody saw: as thick as most facades
+DEEP_M = 0.4
+"""Behind a face whose other side nobody saw: as thick as most facades."""
 
 
 def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
@@ -58,7 +59,10 @@ def label_wall(
     counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, track_m)
     goes_on = (whole.low_m < wall.low_m, whole.high_m > wall.high_m)
     stretches = line_labels.label_line(
-        counts, is_outer=not wall.right, goes_on=goes_on, crossed_m=crossed_m
+        counts,
+        line=priors.INNER if wall.right else priors.OUTER,
+        goes_on=goes_on,
+        crossed_m=crossed_m,
     )
     stretches[-1] = replace(stretches[-1], high_m=whole.high_m)
     stretches = line_ends.end_where_seen(stretches, wall.low_m, wall.high_m)
@@ -71,7 +75,7 @@ def label_wall(
 
 def _list_sides(wall: PlanWall) -> Iterator[Side]:
     """Yield the lines of a wall's faces, each where it is the nearest of its side."""
-    deep_m = (_DEEP_M if np.isnan(wall.thickness_m) else wall.thickness_m) + AT_M
+    deep_m = (DEEP_M if np.isnan(wall.thickness_m) else wall.thickness_m) + AT_M
     for members in (wall.left, wall.right):
         spans_m = np.sort([wall.line.along_m(face.ends) for face in members], axis=-1)
         order = np.argsort(spans_m.reshape(-1, 2)[:, 0]).tolist()

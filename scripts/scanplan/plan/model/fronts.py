@@ -1,0 +1,123 @@
+"""Fronts of glass: lines along which rays that come square are answered, and others pass."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scanplan.geometry import intersections
+from scanplan.geometry.lines import Line
+from scanplan.plan.model import front_rows, glass_views, line_labels, priors, surface_counts
+from scanplan.plan.model.front_rows import FrontRow
+from scanplan.plan.model.line_labels import Stretch
+from scanplan.plan.model.surface_counts import Side, SurfaceCounts
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.tolerances import END_M, FACE_M
+from scanplan.rays.ray_set import RaySet
+from scanplan.types import FloatArray, IntArray
+
+_EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
+_SHARE = 0.001  # of rows of answers are fronts
+_THROUGH = 0.5  # of the rays to a row: what more of come through panes is outside, or mirrored
+
+
+@dataclass(frozen=True, eq=False)
+class Fronts:
+    """What is glass, and where one goes through it.
+
+    Attributes
+    ----------
+    panes : list of (lines.Line, float, float)
+        From where to where along a line there is glass, posts with it.
+    ways_m : list of (2, 2) float64
+        Doors in it, from jamb to jamb.
+    """
+
+    panes: list[tuple[Line, float, float]]
+    ways_m: list[FloatArray]
+
+
+def choose_scans(sensors_m: FloatArray) -> IntArray:
+    """Return the rows of scans to find fronts by: one of each place (s, 2)."""
+    place = np.floor(sensors_m / _EVERY_M).astype(np.int64)
+    return np.sort(np.unique(place, axis=0, return_index=True)[1])
+
+
+def find_fronts(walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray) -> Fronts:
+    """Find the fronts of glass that run as walls do, or across.
+
+    Of each row of answers the labels of its line are asked. It is a front if that explains what
+    rays say of it better than a wall does, or things in a row, between which rays pass.
+
+    Parameters
+    ----------
+    walls : sequence of plan_wall.PlanWall
+        What stands, but for fronts.
+    rays : ray_set.RaySet
+    track_m : (k, 2) float64
+        Where the sensor was, one place after the other.
+    """
+    rows = front_rows.find_front_rows(walls, rays)
+    spans = intersections.stack_spans([*walls, *rows])
+    drawn = [pane for wall in walls for pane in glass_views.draw_panes(wall)]
+    fronts = Fronts([], [])
+    for row in rows:
+        if _is_seen_through(row, drawn) or not _is_front(_count_row(row, rays, track_m)):
+            continue
+        counts = _count_row(front_rows.extend_row(row, spans), rays, track_m)
+        stretches = line_labels.label_line(counts, line=priors.FRONT)
+        panes = list(_list_panes(stretches))
+        ways = [stretch for stretch in stretches if stretch.kind == "door" and panes]
+        fronts.panes.extend((row.line, *pane) for pane in panes)
+        fronts.ways_m.extend(row.line.at(np.array([way.low_m, way.high_m])) for way in ways)
+        drawn.extend(shapely.LineString(row.line.at(np.array(pane))) for pane in panes)
+    return fronts
+
+
+def _is_seen_through(row: FrontRow, panes: Sequence[shapely.LineString]) -> bool:
+    """Return whether most rays to a row come through panes."""
+    drawn = shapely.MultiLineString(list(panes))
+    shapely.prepare(drawn)
+    way_m = row.answers.way_m
+    # a pane at the row is its own
+    before_m = way_m * (1 - END_M / np.hypot(*way_m.T))[:, None]
+    start_m = row.answers.xy_m - way_m
+    ways = shapely.linestrings(np.stack([start_m, start_m + before_m], axis=1))
+    return bool(shapely.intersects(drawn, ways).mean() > _THROUGH)
+
+
+def _count_row(row: FrontRow, rays: RaySet, track_m: FloatArray) -> SurfaceCounts:
+    """Return what rays from both sides say of a row."""
+    everywhere_m = np.array([[-np.inf, np.inf]])
+    lines = (row.line, Line(row.line.centre, -row.line.normal))
+    sides = [Side(line, FACE_M, everywhere_m) for line in lines]
+    counts = surface_counts.count_ends(rays, row.line, row.low_m, row.high_m, sides)
+    return surface_counts.add_passages(counts, row.line, rays, track_m)
+
+
+def _is_front(counts: SurfaceCounts) -> bool:
+    """Return whether a front of glass is likelier than all else that a line may be."""
+    of_front, *of_others = (
+        line_labels.weigh_line(counts, line=line)
+        for line in (priors.FRONT, priors.INNER, priors.OUTER, priors.ROW)
+    )
+    return of_front + math.log(_SHARE / (1 - _SHARE)) >= max(of_others)
+
+
+def _list_panes(stretches: Sequence[Stretch]) -> Iterator[tuple[float, float]]:
+    """Yield from where to where a front is closed, where some of it is glass."""
+    run: list[Stretch] = []
+    for stretch in [*stretches, None]:
+        if stretch is not None and _is_of_front(stretch):
+            run.append(stretch)
+            continue
+        if any(part.kind == "glass" for part in run):
+            yield run[0].low_m, run[-1].high_m
+        run = []
+
+
+def _is_of_front(stretch: Stretch) -> bool:
+    """Return whether a stretch is glass, a post, or a joint that nobody goes through."""
+    return stretch.kind == "glass" or stretch.length_m < priors.LEAST_M[priors.DOOR]

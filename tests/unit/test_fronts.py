@@ -1,0 +1,116 @@
+"""Fronts of glass in a room of 8 m x 6 m, seen by a planar scanner on its way along both sides.
+
+The front runs at y = 3 from wall to wall, posts every 2 m, a door from 4.6 to 5.5 m.
+"""
+
+import numpy as np
+import pytest
+import shapely
+
+from scanplan.geometry.lines import Line
+from scanplan.plan.model import fronts
+from scanplan.plan.model.front_rows import find_front_rows
+from scanplan.plan.plan_wall import PlanWall
+from scanplan.rays import ray_set
+
+LENGTH_M, DEPTH_M, FRONT_M = 8.0, 6.0, 3.0
+DOOR_M = (4.6, 5.5)
+POSTS_M = (2.0, 4.0, 4.55, 5.55, 6.0)
+ROOM = shapely.box(0, 0, LENGTH_M, DEPTH_M).exterior
+PANE = shapely.LineString([(0, FRONT_M), (LENGTH_M, FRONT_M)]).difference(
+    shapely.LineString([(DOOR_M[0], FRONT_M), (DOOR_M[1], FRONT_M)])
+)
+POSTS = shapely.unary_union([shapely.box(x - 0.05, 2.95, x + 0.05, 3.05) for x in POSTS_M])
+ANSWERS_RAD = np.radians(7)  # from square up to which the pane answers
+WAY_M = [
+    *((x, 1.5) for x in np.arange(0.5, 5.1, 0.25)),
+    *((5.05, y) for y in np.arange(1.75, 4.5, 0.25)),
+    *((x, 4.5) for x in np.arange(4.8, 0.4, -0.25)),
+]
+
+
+def wall(start, end):
+    """Return a wall between two places, of which nothing but its place is known."""
+    start, end = np.array(start, float), np.array(end, float)
+    way = (end - start) / np.hypot(*(end - start))
+    line = Line(start, np.array([way[1], -way[0]]))
+    low_m, high_m = np.sort(line.along_m(np.array([start, end]))).tolist()
+    return PlanWall(line, low_m, high_m, np.nan, [], [])
+
+
+CORNERS = [(0, 0), (0, DEPTH_M), (LENGTH_M, DEPTH_M), (LENGTH_M, 0)]
+WALLS = [wall(a, b) for a, b in zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True)]
+
+
+def look(pane, things):
+    """Return the rays of a scan from each place of the way, with noise of 5 mm."""
+    rng = np.random.default_rng(1)
+    rad = np.radians(np.arange(0.25, 360, 0.5))
+    is_square = np.abs(np.sin(rad)) >= np.cos(ANSWERS_RAD)
+    solid = shapely.unary_union([ROOM, things])
+    scans, sensors_m = [], {}
+    for number, place in enumerate(np.array(WAY_M)):
+        far_m = place + 20 * np.column_stack([np.cos(rad), np.sin(rad)])
+        ways_m = np.stack([np.broadcast_to(place, far_m.shape), far_m], axis=1)
+        beams = np.asarray(shapely.linestrings(ways_m), object)
+        ends_m = np.full((len(rad), 2), np.inf)
+        for rows, stops in ((~is_square, solid), (is_square, solid.union(pane))):
+            met = shapely.intersection(beams[np.flatnonzero(rows)], stops)
+            hits_m, beam = shapely.get_coordinates(met, return_index=True)
+            # of what a beam meets the nearest comes last, and stays
+            order = np.argsort(-np.hypot(*(hits_m - place).T), kind="stable")
+            ends_m[np.flatnonzero(rows)[beam[order]]] = hits_m[order]
+        ends_m += rng.normal(0, 0.005, ends_m.shape)
+        sensors_m[number] = np.array([*place, 0.0])
+        scans.append((number, np.column_stack([ends_m, np.zeros(len(ends_m))])))
+    return ray_set.gather_rays(scans, sensors_m, planar=True)
+
+
+def find(pane, things):
+    return fronts.find_fronts(WALLS, look(pane, things), np.array(WAY_M))
+
+
+@pytest.fixture(scope="module")
+def front():
+    return find(PANE, POSTS)
+
+
+class TestFront:
+    def test_panes_are_where_glass_is(self, front):
+        ends_m = [line.at(np.array(span)) for line, *span in front.panes]
+        drawn = shapely.unary_union([shapely.LineString(ends) for ends in ends_m])
+        assert drawn.hausdorff_distance(PANE) < 0.3
+        assert drawn.length == pytest.approx(PANE.length, abs=0.4)
+
+    def test_a_door_is_where_the_sensor_went_through(self, front):
+        (way_m,) = front.ways_m
+        np.testing.assert_allclose(np.sort(way_m[:, 0]), DOOR_M, atol=0.15)
+        np.testing.assert_allclose(way_m[:, 1], FRONT_M, atol=0.05)
+
+
+@pytest.mark.parametrize(
+    "things",
+    [
+        POSTS,
+        shapely.unary_union([shapely.box(x, 2.9, x + 0.06, 3.0) for x in np.arange(1, 5, 0.4)]),
+    ],
+    ids=["posts alone", "legs in a row"],
+)
+def test_what_rays_pass_between_is_no_front(things):
+    found = find(shapely.LineString(), things)
+    assert found.panes == [] and found.ways_m == []
+
+
+def test_what_answers_from_every_side_is_no_front():
+    """A screen that nobody took for a wall."""
+    screen = shapely.LineString([(1, FRONT_M), (4, FRONT_M)]).buffer(0.02)
+    assert find(shapely.LineString(), screen).panes == []
+
+
+def test_answers_of_walls_are_no_rows():
+    assert find_front_rows(WALLS, look(shapely.LineString(), shapely.LineString())) == []
+
+
+def test_one_scan_of_each_place_is_enough():
+    sensors_m = np.array([(0.1, 0.1), (0.12, 0.1), (1.1, 0.1), (0.1, 0.11), (1.1, 0.9)])
+    assert fronts.choose_scans(sensors_m).tolist() == [0, 2, 4]
