@@ -43,6 +43,7 @@ class TestParts:
         ((part, top_m),) = parts(wall, looked)
         assert (part.low_m, part.high_m) == (0, 5) and np.isnan(top_m)
         assert part.openings == [] and part.closed == []
+        assert 0.9 < part.p_solid <= 1
 
     def test_a_door_cuts_the_faces_and_not_the_wall(self):
         wall, looked = paired(

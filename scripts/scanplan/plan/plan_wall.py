@@ -50,6 +50,9 @@ class PlanWall(Span):
         Ways through, and gaps taken for wall; in order along it.
     inferred : list of InferredFace
         What else it has of faces, once `wall_faces` has cut them.
+    p_wall, p_solid : float
+        Probability that it is a wall, no leaf, furniture or what is outside; and of its stretches
+        between openings that they are solid, in the mean of their length. NaN: not weighed.
     """
 
     line: Line
@@ -61,6 +64,8 @@ class PlanWall(Span):
     openings: list[Opening] = field(default_factory=list)
     closed: list[Opening] = field(default_factory=list)
     inferred: list[InferredFace] = field(default_factory=list)
+    p_wall: float = math.nan
+    p_solid: float = math.nan
 
     @property
     def members(self) -> list[FaceInterval]:

@@ -239,7 +239,7 @@ FACES = Schema(
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 PLAN_WALLS = Schema(
     "plan_walls",
-    3,
+    4,
     {
         "wall": "int32",
         **_CENTRELINE,
@@ -261,6 +261,7 @@ PLAN_WALLS = Schema(
         ),
         "n_points": "int64",
         "n_scans": "int32",
+        **dict.fromkeys(("p_wall", "p_solid"), "float64"),
         "verify": "bool",
         "corrected": "string",
     },
@@ -268,8 +269,10 @@ PLAN_WALLS = Schema(
 )
 """Walls of the plan.
 
-One seen from a single side has no thickness (NaN), and its line is that of its face. `corrected`
-says what a person said of it, here and of openings and rooms; empty where nobody did.
+One seen from a single side has no thickness (NaN), and its line is that of its face. `p_wall` is
+how likely it is a wall by what is around it, no leaf, furniture or what is outside, `p_solid` how
+likely what lies between its openings is solid, by rays (NaN: of one that a person drew).
+`corrected` says what a person said of it, here and of openings and rooms; empty where nobody did.
 """
 OPENINGS = Schema(
     "openings",

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scanplan.plan.model import glass_views, line_ends, things, wall_labels
 from scanplan.plan.model.surface_features import Features, Surroundings
@@ -58,8 +58,13 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = things.choose_kinds(things.weigh_things(found))
-    kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
+    p = things.weigh_things(found)
+    kinds = things.choose_kinds(p)
+    kept = [
+        (replace(part, p_wall=float(p_wall)), top_m)
+        for (part, top_m), kind, p_wall in zip(parts, kinds, p[:, things.WALL], strict=True)
+        if kind == things.WALL
+    ]
     kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],

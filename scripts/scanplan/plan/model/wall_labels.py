@@ -150,7 +150,12 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
         for opening in [opening_edges.measure_opening(wall, stretch)]
     ]
     openings.sort(key=lambda opening: opening.low_m)
-    opened = replace(part, openings=openings, closed=_list_hidden(part, openings))
+    opened = replace(
+        part,
+        openings=openings,
+        closed=_list_hidden(part, openings),
+        p_solid=_find_p_solid(run),
+    )
     ways = [opening for opening in openings if not opening.is_above_wall]
     left, right = (
         [piece for face in side for piece in _cut_face(part, face, ways)]
@@ -158,6 +163,13 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
     )
     # what is nothing but openings has no face left, and is drawn by what is seen in them
     return replace(opened, left=left, right=right) if left else opened
+
+
+def _find_p_solid(run: Sequence[Stretch]) -> float:
+    """Return how probable what is no opening of a run is, in the mean of its length."""
+    solid = [stretch for stretch in run if not opening_edges.is_opening(stretch)]
+    whole_m = sum(stretch.length_m for stretch in solid)
+    return sum(stretch.p * stretch.length_m for stretch in solid) / whole_m if solid else np.nan
 
 
 def _turn(opening: Opening) -> Opening:
