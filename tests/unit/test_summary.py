@@ -54,15 +54,6 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
     )
 
 
-def test_a_plan_whose_elements_are_not_rated_says_so():
-    made = floorplan_making.walls()
-    n = len(made["wall"])
-    unrated = {"p_true": np.full(n, np.nan), "verify": np.zeros(n, bool)}
-    unrated["doubt"] = np.full(n, "", object)
-    doubtful = summarise_survey(plan(walls=made | unrated), survey()).splitlines()[2]
-    assert doubtful.endswith("is not known, as no heights above the floor were seen")
-
-
 def test_an_unknown_prediction_is_no_number():
     unknown = PredictionFacts(
         0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"

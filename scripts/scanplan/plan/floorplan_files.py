@@ -17,6 +17,7 @@ UNRATED = "not rated, as the stage that rates it failed"
 _UNSEEN: dict[str, float | str] = {
     "p_true": 0.0,
     "verify": True,
+    "about": "existence",
     "doubt": "not seen",
     "needs_person": False,
 }

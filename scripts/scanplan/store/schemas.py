@@ -404,12 +404,13 @@ The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), 
 """
 CONFIDENCE = Schema(
     "confidence",
-    2,
+    3,
     {
         "table": "string",
         "number": "int32",
         "p_true": "float64",
         "verify": "bool",
+        "about": "string",
         "doubt": "string",
         "needs_person": "bool",
     },
@@ -418,11 +419,13 @@ CONFIDENCE = Schema(
 """How likely elements of a plan exist as they are drawn.
 
 `table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
-a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
-(`validation/confidence_coefficients.py`), that a wall is weakly supported, that it is not known
-what a gap is, or a pane of a planar survey, or that a room is not closed or most of its walls are
-to be verified; `doubt` in words why, `needs_person` that it would be doubted however well it was
-seen: for its size, or as an opening in no wall.
+what a person corrected. `about` says what of an element is doubtful, empty where nothing is:
+existence or kind, where `p_true` is below the level of its survey
+(`validation/confidence_coefficients.py`), or it is not known what a gap is; the place of a wall
+that is weakly supported; the outline of a room that is not closed, or most of whose walls are to be
+verified. Those are to `verify`. What stands as it is drawn, but for its end or its width, is not.
+`doubt` says in words why, `needs_person` that it would be doubted however well it was seen: for its
+size, or as an opening in no wall.
 """
 VALIDATION_RAYS = Schema(
     "validation_rays",

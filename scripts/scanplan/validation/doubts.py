@@ -60,16 +60,14 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
 
 
 def list_unrated(plan: FloorPlan) -> list[str]:
-    """Return in a sentence why no element has a probability, where none has; else nothing."""
-    known = plan.walls.get("p_true", np.zeros(1))
-    if len(known) == 0 or np.isfinite(known).any():
+    """Return in a sentence that the stage failed that rates elements; nothing if it did not."""
+    told = plan.walls.get("doubt", np.empty(0, object))
+    if len(told) == 0 or (told != UNRATED).any():
         return []
-    if (plan.walls["doubt"] == UNRATED).all():
-        return [
-            "how likely elements are right is not known, as the stage that rates them failed: all"
-            " are to be verified"
-        ]
-    return ["how likely elements are is not known, as no heights above the floor were seen"]
+    return [
+        "how likely elements are right is not known, as the stage that rates them failed: all are"
+        " to be verified"
+    ]
 
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:

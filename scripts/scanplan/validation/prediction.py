@@ -46,6 +46,8 @@ class ValidationSettings:
         Scans taken in one square of this edge count as one, see `clustered_shares`.
     registration_sigma_m : float, > 0
         Standard deviation of a scan's place.
+    max_sigma_m : float, > 0
+        Ends of walls that have a greater one are doubtful.
     seed : int
     """
 
@@ -54,6 +56,7 @@ class ValidationSettings:
     span_m: float
     place_m: float
     registration_sigma_m: float
+    max_sigma_m: float
     seed: int
 
 
