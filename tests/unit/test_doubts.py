@@ -1,10 +1,15 @@
 """What is listed of a toy plan's doubts, in which order and words."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from helpers import floorplan_making
 from scanplan.exports.sheet import composition
+from scanplan.plan import floorplan_files
+from scanplan.plan.plan_wall import Nearly
+from scanplan.store import schemas, tables
 from scanplan.validation import doubt_words, doubts
 
 
@@ -99,6 +104,33 @@ def test_a_place_is_told_by_the_side_of_its_room(way, side):
     assert doubt_words.say_where(made, 1, middle_m + way) == f"at the {side} of Room 1"
     assert doubt_words.say_where(made, 1, None) == "Room 1"
     assert "outside" in doubt_words.say_where(made, -1, middle_m)
+
+
+def test_what_was_nearly_drawn_is_listed_apart_the_likeliest_first():
+    near = [Nearly(kind, np.array([(1.0, 0.0), (2.0, 0.0)]), p)
+            for kind, p in (("window", 0.3), ("wall", 0.45))]  # fmt: skip
+    made = replace(plan(), nearly=near)
+    assert doubts.list_doubts(made) == []
+    found = doubts.list_nearly(made)
+    assert [doubt.name for doubt in found] == ["Perhaps a wall", "Perhaps a window"]
+    assert found[0].question.startswith("Perhaps a wall") and "1.0 m long" in found[0].question
+
+
+def test_a_note_holds_what_was_nearly_drawn(tmp_path):
+    near = [Nearly("door", np.array([(1.0, 0.0), (1.9, 0.12345)]), 0.34567)]
+    files = {name: tmp_path / f"{name}.parquet" for name in ("faces", "walls", "openings", "rooms")}
+    parts = {name: getattr(floorplan_making, name)() for name in files}
+    named = {"faces": schemas.FACES, "walls": schemas.PLAN_WALLS}
+    named |= {"openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
+    for name, path in files.items():
+        tables.write_table(path, named[name], parts[name])
+    files["free"] = tmp_path / "free.parquet"
+    for notes, expected in ((None, 0), ({"nearly": floorplan_files.format_nearly(near)}, 1)):
+        tables.write_table(files["free"], schemas.FREE, floorplan_making.free(), notes=notes)
+        found = floorplan_files.read_floorplan(files).nearly
+        assert len(found) == expected
+    assert (found[0].kind, found[0].p) == ("door", 0.346)
+    np.testing.assert_allclose(found[0].ends_m, [(1, 0), (1.9, 0.123)])
 
 
 @pytest.mark.parametrize("about", ["", "existence", "kind", "place", "outline", "end", "width"])

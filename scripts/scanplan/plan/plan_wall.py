@@ -32,6 +32,15 @@ class InferredFace(Span):
 
 
 @dataclass(frozen=True, eq=False)
+class Nearly:
+    """What was nearly drawn: wall, door, window or glass, its ends (2, 2), and how likely it is."""
+
+    kind: str
+    ends_m: FloatArray
+    p: float
+
+
+@dataclass(frozen=True, eq=False)
 class PlanWall(Span):
     """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
 
@@ -53,6 +62,8 @@ class PlanWall(Span):
     p_wall, p_solid : float
         Probability that it is a wall, no leaf, furniture or what is outside; and of its stretches
         between openings that they are solid, in the mean of their length. NaN: not weighed.
+    nearly : sequence of Nearly
+        Openings that it nearly has.
     """
 
     line: Line
@@ -66,6 +77,7 @@ class PlanWall(Span):
     inferred: list[InferredFace] = field(default_factory=list)
     p_wall: float = math.nan
     p_solid: float = math.nan
+    nearly: Sequence[Nearly] = ()
 
     @property
     def members(self) -> list[FaceInterval]:

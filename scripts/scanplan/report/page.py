@@ -103,6 +103,7 @@ def report_page(
         ],
         n_more=len(found[doubts.MOST :]),
         n_doubts=len(found),
+        nearly=doubts.list_nearly(plan),
         confidence=wording.confidence_note(plan),
         plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
         opening_kinds=_list_opening_kinds(plan),

@@ -322,7 +322,8 @@ FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geo
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
-corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
+corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not; and
+`nearly`, what was nearly drawn: a list of `kind`, `ends_m` and `p`, JSON.
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
 """Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""

@@ -5,6 +5,8 @@ import numpy as np
 from scanplan.plan.floorplan import OPENINGS, FloorPlan
 from scanplan.types import FloatArray
 
+NEARLY = "nearly"
+"""What is asked of something that is not drawn."""
 _SIDES = ("right", "top", "left", "bottom")
 _NOUNS = OPENINGS | {"face": "side of a wall"}
 # a question by what it is of, and what of that is doubtful; of others by the latter alone
@@ -21,6 +23,7 @@ _OTHERS = {
     "place": "Is the {noun} {where}{size} where it is drawn?",
     "end": "Where does the wall end {where}{size}?",
     "width": "How wide is the {noun} {where}{size}?",
+    NEARLY: "Perhaps a {noun} {where}{size}?",
     "": "Is the {noun} {where}{size} as it is drawn?",
 }
 
@@ -41,7 +44,8 @@ def ask(noun: str, about: str, size_m: float, where: str) -> str:
     """
     words = _QUESTIONS.get((noun, about), _OTHERS.get(about, _OTHERS[""]))
     measured = "wide" if noun in OPENINGS else "long"
-    size = "" if np.isnan(size_m) else f", {size_m:.1f} m {measured} as drawn"
+    drawn = "" if about == NEARLY else " as drawn"
+    size = "" if np.isnan(size_m) else f", {size_m:.1f} m {measured}{drawn}"
     return words.format(noun=_NOUNS.get(noun, noun), where=where, size=size)
 
 

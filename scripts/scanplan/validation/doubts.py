@@ -11,6 +11,7 @@ from scanplan.plan.floorplan_files import UNRATED
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 from scanplan.validation import doubt_words
 from scanplan.validation.confidence import END, EXISTENCE, KIND, NOT_CLOSED, PLACE, WIDTH
+from scanplan.validation.doubt_words import NEARLY
 
 MOST = 20
 """Lines that a person reads of a list before anything else."""
@@ -33,7 +34,7 @@ class Doubt:
     Attributes
     ----------
     kind : str
-        `opening`, `wall`, `face` or `room`.
+        `opening`, `wall`, `face` or `room`; `nearly` of what is not drawn.
     number : int
     name : str
         What it is called.
@@ -107,6 +108,30 @@ def group_by_room(doubts: Sequence[Doubt]) -> list[tuple[str, list[Doubt]]]:
     for doubt in doubts:
         rooms.setdefault(doubt.room, []).append(doubt)
     return list(rooms.items())
+
+
+def list_nearly(plan: FloorPlan) -> list[Doubt]:
+    """List what was nearly drawn, the likeliest first."""
+    found: list[Doubt] = []
+    for number, near in enumerate(sorted(plan.nearly, key=lambda near: -near.p)):
+        place_m = near.ends_m.mean(axis=0)
+        at = _find_nearest_room(plan, place_m)
+        where = doubt_words.say_where(plan, at, place_m)
+        size_m = float(np.hypot(*(near.ends_m[1] - near.ends_m[0])))
+        found.append(
+            Doubt(
+                kind="nearly",
+                number=number,
+                name=f"Perhaps a {near.kind}",
+                reason=f"p {near.p:.2f}",
+                about=EXISTENCE,
+                question=doubt_words.ask(near.kind, NEARLY, size_m, where),
+                room=plan.room_names[at] if at >= 0 else "",
+                place_m=place_m,
+                cost=_COSTS[near.kind] * near.p,
+            )
+        )
+    return found
 
 
 def list_unrated(plan: FloorPlan) -> list[str]:
@@ -209,6 +234,10 @@ def _find_room(plan: FloorPlan, kind: str, columns: Columns, row: int, place_m: 
         beside = [int(columns[name][row]) for name in ("room_a", "room_b")]
         known = [rows[number] for number in beside if number in rows]
         return known[0] if known else -1
+    return _find_nearest_room(plan, place_m)
+
+
+def _find_nearest_room(plan: FloorPlan, place_m: FloatArray) -> int:
     far_m = shapely.distance(plan.areas, shapely.Point(place_m))
     return int(far_m.argmin()) if far_m.min(initial=np.inf) <= _BESIDE_M else -1
 

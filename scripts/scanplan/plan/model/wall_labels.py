@@ -13,7 +13,7 @@ from scanplan.plan.model import line_ends, line_labels, opening_edges, surface_c
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
 from scanplan.plan.openings import CLOSED, Opening
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.ray_set import RaySet
@@ -155,6 +155,15 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
         openings=openings,
         closed=_list_hidden(part, openings),
         p_solid=_find_p_solid(run),
+        nearly=[
+            Nearly(
+                "door" if of.kind == "shut" else of.kind,
+                wall.line.at(np.array([of.low_m, of.high_m])),
+                of.p,
+            )
+            for stretch in run
+            for of in stretch.nearly
+        ],
     )
     ways = [opening for opening in openings if not opening.is_above_wall]
     left, right = (
