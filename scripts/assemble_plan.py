@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan_files import format_nearly
 from scanplan.plan.model import fronts
 from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
@@ -112,7 +113,9 @@ def assemble_plan(
     ]
     found = earlier.add(findings=witnesses.tell("assemble_plan", measured))
     for name, schema in planning.TABLES.items():
-        notes = {**heights_m, **found.as_notes()} if name == "free" else None
+        notes = None
+        if name == "free":
+            notes = {**heights_m, **found.as_notes(), "nearly": format_nearly(plan.nearly)}
         columns = getattr(plan, name)
         tables.write_table(outputs[name], schema, columns, allow_empty=True, notes=notes)
     log.log_line(

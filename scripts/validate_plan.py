@@ -66,7 +66,7 @@ def validate_plan(
     tables.write_table(outputs["elements"], schemas.VALIDATION, found.elements, notes=notes)
     tables.write_table(outputs["rays"], schemas.VALIDATION_RAYS, found.rays, allow_empty=True)
     result = absent or prediction.summarise_counts(found)
-    rated = confidence.rate_elements(drawn, found.elements)
+    rated = confidence.rate_elements(drawn, found.elements, limits.max_sigma_m)
     xyz_m = registered.map_from_sensor[:, :3, 3]
     spoken = witnesses.tell(
         "validate_plan", survey_witnesses.measure_plan(drawn, rays, xyz_m, found)
@@ -89,9 +89,7 @@ def _summarise_confidence(rated: Columns) -> str:
         f" of {np.sum(rated['table'] == table)} {table}"
         for table in floorplan.NUMBERS
     ]
-    is_rated = np.isfinite(rated["p_true"]).any()
-    words = "" if is_rated else "; not rated, as no heights above the floor are known"
-    return f"to verify on site: {', '.join(counts)}{words}"
+    return f"to verify on site: {', '.join(counts)}"
 
 
 if __name__ == "__main__":

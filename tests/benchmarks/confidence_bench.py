@@ -1,282 +1,175 @@
-"""Coefficients of the confidence in a plan's elements, and how well they hold on other surveys.
+"""Coefficients of the confidence in a plan's elements, and how well they hold on other floors.
 
-Plans of few and of all chosen scans of simulated surveys are held against the truth: which of their
-elements exist as they are drawn. What is fitted on some surveys is tested on others.
+Plans that `realistic` has finished are held against their truths, in the bench's own terms: which
+of their elements are right. What is fitted on the tuning half is told apart by kinds of buildings
+that were left out, by the reporting half and by real floors.
 """
 
 import pprint
+import sys
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+import ablation
+import ablation_scores
 import matplotlib.pyplot as plt
 import numpy as np
-import shapely
+from realistic import scoring
+from realistic.floors import HALVES, Floor
 from scipy import optimize, special
 
-from scanplan.extraction import extractors, segments
-from scanplan.lab.evaluation import (
-    length_metrics,
-    opening_metrics,
-    pose_errors,
-    true_plan,
-    truth_file,
-)
-from scanplan.plan import floorplan, planning
-from scanplan.project import stage_settings
-from scanplan.rays import levels, ray_set
-from scanplan.selection import stopping
-from scanplan.stage.per_registered_scan import sensor_keywords
-from scanplan.store import registered_scans, tables
-from scanplan.types import BoolArray, FloatArray, IntArray, Settings
-from scanplan.validation import confidence, left_out_scans, prediction
+from scanplan.lab.evaluation.scores import flag_scores, score, score_files
+from scanplan.plan import floorplan, floorplan_files
+from scanplan.store import schemas, tables
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray
+from scanplan.validation import confidence
 from scanplan.validation.element_features import describe_elements
 
-_PLANS = ((0.1, 0.0), (0.3, 0.0), (1.0, 0.0), (0.5, 0.15))
-# share of the chosen scans, and how far some are displaced [m]: so that there is more that is wrong
-_EVERY = 4  # scan is displaced
-_RIGHT_SHARE = 0.8  # of the length of a face or wall near a true one
-_WITHIN_M = 0.1
-_RIGHT_FLAGGED = 0.09  # of right elements lie below the level: on other surveys it may be a tenth
-_BINS = 10
-Rating = tuple[FloatArray, FloatArray, BoolArray]
-_KINDS = {"door": "door", "passage": "door", "window": "window", "glass": "window"}
+_TABLES = ("faces", "walls", "openings", "rooms", "free")
+_RIGHT_FLAGGED = 0.09  # of right elements lie below the level: on other floors it may be a tenth
+_SUREST_SHARE = 0.1  # of elements of kinds left out: as often as these are right, nothing is surer
+_TEMPERS = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5)
+_LEAST_WEIGHT = 0.05  # of a deviation of a feature: it changes no probability by more than .0125
+Features = Mapping[str, FloatArray]
 
 
-def bench(
-    results: Path,
-    train: Sequence[str],
-    test: Sequence[str],
-    *,
-    coefficients: Path,
-    figure: Path,
-    settings: Settings,
-) -> None:
-    """Fit on some surveys below `results`, test on others; write coefficients and a figure."""
-    rows = {name: list(_rate_survey(results / name, settings)) for name in (*train, *test)}
-    fitted = _fit_tables(rows, train)
-    level = _choose_level(rows, train, fitted)
-    text = pprint.pformat({"level": level} | fitted, sort_dicts=False, width=90)
+@dataclass(frozen=True, eq=False)
+class Rated:
+    """The elements of a floor's plan: by table, their features, and which (n,) are right.
+
+    `right` is 1, 0, or NaN of what the truth does not tell.
+    """
+
+    floor: Floor
+    is_planar: bool
+    features: Mapping[str, Features]
+    right: Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """How likely elements (n,) are said to be right, whether they are, and whether flagged."""
+
+    p_true: FloatArray
+    right: BoolArray
+    flagged: BoolArray
+
+
+def bench(folder: Path, *, coefficients: Path, figure: Path) -> None:
+    """Fit on the tuning half below a folder of `realistic`; write coefficients and a figure."""
+    found = [
+        rate_floor(path, floor)
+        for path in sorted((folder / "code/results").glob("*"))
+        if (path / "plan/validation.parquet").exists()
+        for floor in [ablation.find_floor(path)]
+        if floor.half and ablation_scores.find_truth(path) is not None
+    ]
+    fitted: dict[str, Any] = {}
+    charts: dict[tuple[str, str], dict[str, Judged]] = {}
+    for name, is_planar in (("space", False), ("plane", True)):
+        of_sensor = [rated for rated in found if rated.is_planar == is_planar]
+        halves = {half: [r for r in of_sensor if r.floor.half == half] for half in HALVES}
+        if not halves["tuning"]:
+            sys.exit(f"confidence: no tuning floor of {name} is finished in {folder}")
+        plain = fit_tables(halves["tuning"])
+        tempers = choose_tempers(halves["real"], plain)
+        left_out = _leave_out(halves["tuning"], tempers)
+        fitted[name] = soften_models(plain, tempers) | choose_limits(left_out.values())
+        limits = (fitted[name]["most"], fitted[name]["level"])
+        charts[name, "tuning"] = {table: _limit(j, *limits) for table, j in left_out.items()}
+        for half in ("reporting", "real"):
+            if halves[half]:
+                charts[name, half] = _judge(halves[half], fitted[name])
+        fitted[name]["off"] = {
+            half: _find_errors(charts[name, half]) for half in HALVES if (name, half) in charts
+        }
+    kinds = dict.fromkeys(rated.floor.kind for rated in found if rated.floor.half == "tuning")
     coefficients.write_text(
-        '"""The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.\n\n'
-        + textwrap.fill(f"Fitted on {', '.join(train)}; tested on {', '.join(test)}.", 100)
-        + '\n"""\n\nfrom typing import Any\n\n'
-        + f"COEFFICIENTS: dict[str, Any] = {text}\n"
-    )
-    folds = []
-    for name in train:
-        others = [other for other in train if other != name]
-        without = _fit_tables(rows, others)
-        folds.append(_rate_tables(rows, [name], without, _choose_level(rows, others, without)))
-    left_out = {t: _join_ratings([fold[t] for fold in folds]) for t in floorplan.NUMBERS}
-    tested = _rate_tables(rows, test, fitted, level)
-    sheet, axes = plt.subplots(1, 2, figsize=(9, 4.5), sharey=True)
-    _report(axes[0], left_out, f"{len(train)} surveys, each left out of its fit")
-    _report(axes[1], tested, f"tested on {', '.join(test)}")
-    sheet.savefig(figure, dpi=110, bbox_inches="tight")
-
-
-def _rate_survey(folder: Path, settings: Settings) -> Iterator[dict[str, Any]]:
-    """Yield, of plans of a survey, features and rightness by table."""
-    method = settings["plan"]["method"]
-    stop = stage_settings.select_section(settings, "selection", "stop")
-    ordering, count, _ = stopping.read_choice(folder / f"selection/{method}.parquet", **stop)
-    for share, shift_m in _PLANS:
-        chosen = np.sort(ordering["scan_id"][: max(round(share * count), 3)])
-        plan, validation, motion = _make_plan(folder, chosen, settings, shift_m)
-        features = describe_elements(plan, validation)
-        right = _judge(plan, motion, folder / "survey/truth.geojson")
-        yield {table: (features[table], right[table]) for table in floorplan.NUMBERS}
-        n_wrong = {table: int((right[table] == 0).sum()) for table in right}
-        print(f"confidence, {folder.name}, {len(chosen)} scans: wrong {n_wrong}", flush=True)
-
-
-def _make_plan(
-    folder: Path, chosen: Any, settings: Settings, shift_m: float
-) -> tuple[Any, Any, FloatArray]:
-    store = tables.ScanStore(folder / "scans.parquet")
-    shifts_m = np.zeros((len(chosen), 3))
-    wrong = np.arange(len(chosen)) % _EVERY == 0
-    shifts_m[wrong, :2] = np.random.default_rng(1).normal(0, shift_m, (wrong.sum(), 2))
-    moved = [
-        (scan_id, xyz_m + shift)
-        for (scan_id, xyz_m), shift in zip(store.scans(chosen), shifts_m, strict=True)
-    ]
-    found = _extract(folder, chosen, moved, store.planar, settings)
-    registered = registered_scans.read_registered_scans(folder / "registration.parquet")
-    rows = registered_scans.rows_of_scans(chosen, registered, "selection", "registration")
-    poses = registered.map_from_sensor
-    sensors_m = dict(zip(chosen.tolist(), poses[rows, :3, 3] + shifts_m, strict=True))
-    rays = ray_set.gather_rays(moved, sensors_m, planar=store.planar)
-    made = planning.make_plan(
-        segments.segment_columns(chosen, found),
-        rays,
-        poses[:, :2, 3],
-        registered.t_ns[rows],
-        planning.make_plan_settings(**stage_settings.select_plan(settings)),
-        poses[rows, :3, 2],
-        registered.covariance[rows],
-    )
-    z_m = levels.find_floor_and_ceiling(np.empty(0) if rays.planar else rays.xyz_m[:, 2])
-    parts = {name: getattr(made, name) for name in ("faces", "walls", "openings", "rooms", "free")}
-    plan = floorplan.make_floorplan(parts, float(z_m[0]), float(z_m[1]))
-    limits = prediction.ValidationSettings(**stage_settings.select_validation(settings))
-    drawn = left_out_scans.draw_left_out_rays(
-        store,
-        registered,
-        chosen,
-        (plan.storey_m[0], plan.ceiling_z_m),
-        max_scans=limits.max_scans,
-        max_rays=limits.max_rays,
-        seed=limits.seed,
-    )
-    truth = truth_file.read_true_poses(folder / "survey/truth_poses.tum")
-    placed = truth_file.interpolate_true_poses(truth, registered.t_ns, folder)
-    motion = pose_errors.fit_alignment(poses[:, :3, 3], placed[:, :3, 3])
-    return plan, prediction.validate_by_rays(plan, drawn, limits).elements, motion
-
-
-def _extract(
-    folder: Path, chosen: Any, scans: Sequence[Any], planar: bool, settings: Settings
-) -> list[Any]:
-    extractor = extractors.EXTRACTORS["cluster_ransac"]
-    keywords = stage_settings.select_extractor(settings, "cluster_ransac")
-    of_walls = extractors.select_settings(extractor.settings, keywords)
-    sensors = sensor_keywords(chosen, "selection", folder / "registration.parquet")
-    return [
-        extractors.find_wall_segments(
-            scan_id,
-            xyz_m,
-            planar=planar,
-            extractor=extractor,
-            settings=of_walls,
-            max_rmse_m=extractors.select_max_rmse_m(extractor, keywords),
-            **sensors[scan_id],
+        '"""The model of `confidence.py`, written by `make bench ARGS="confidence FOLDER"`.\n\n'
+        + textwrap.fill(
+            f"Fitted on drives through buildings of these kinds: {', '.join(kinds)}.", 100
         )
-        for scan_id, xyz_m in scans
+        + '\n"""\n\nfrom typing import Any\n\n'
+        + f"COEFFICIENTS: dict[str, Any] = {pprint.pformat(fitted, sort_dicts=False, width=90)}\n"
+    )
+    _draw(charts, figure)
+
+
+def rate_floor(results: Path, floor: Floor) -> Rated:
+    """Return the elements of a finished plan, and which are right.
+
+    Raises
+    ------
+    StageError
+        If a table is missing, or of another version than this code's.
+    """
+    plan = floorplan_files.read_floorplan({t: results / f"plan/{t}.parquet" for t in _TABLES})
+    validation = tables.read_table(results / "plan/validation.parquet", schemas.VALIDATION)
+    recorded = ablation_scores.find_truth(results)
+    assert recorded is not None
+    placed = scoring.place_floor(results, recorded, with_points=False)
+    elements = score_files.score_results(placed).elements
+    print(f"confidence, {results.name}", flush=True)
+    return Rated(
+        floor,
+        confidence.is_planar(plan),
+        describe_elements(plan, validation),
+        {
+            table: _find_right(elements, number, getattr(plan, table)[number])
+            for table, number in floorplan.NUMBERS.items()
+        },
+    )
+
+
+def _find_right(elements: Columns, kind: str, numbers: IntArray) -> FloatArray:
+    """Return which elements (n,) of a plan are right; NaN of those that are not judged."""
+    chosen = (elements["table"] == kind) & (elements["number"] >= 0)
+    chosen &= ~np.isin(elements["verdict"], [score.MISSED, *score.UNCOUNTED])
+    verdict_of = dict(
+        zip(elements["number"][chosen].tolist(), elements["verdict"][chosen], strict=True)
+    )
+    right = [
+        np.nan if n not in verdict_of else verdict_of[n] == score.RIGHT for n in numbers.tolist()
     ]
+    return np.array(right, np.float64)
 
 
-def _judge(plan: Any, motion: FloatArray, truth: Path) -> dict[str, FloatArray]:
-    """Return of each element whether it exists as drawn (1) or not (0); NaN of unknown gaps."""
-
-    def moved(lines_m: FloatArray) -> FloatArray:
-        return lines_m @ motion[:2, :2].T + motion[:2, 3]
-
-    true, known = true_plan.read_true_plan(truth), truth_file.read_true_faces(truth)
-    true_m = np.concatenate([known.inner_m, known.outer_m])
-    faces_m = moved(floorplan.centrelines_m(plan.faces))
-    share = np.array([_share_near(line_m, true_m) for line_m in faces_m])
-    length_m = np.hypot(*(faces_m[:, 1] - faces_m[:, 0]).T)
-    host = plan.faces["wall"]
-    share_of_wall = [_mean(share, length_m, host == wall) for wall in plan.walls["wall"]]
-    areas = shapely.transform(plan.areas, lambda xy_m: np.asarray(moved(xy_m), np.float64))
-    ious = [max((_iou(area, room) for room in true.rooms), default=0.0) for area in areas]
-    return {
-        "faces": (share >= _RIGHT_SHARE).astype(float),
-        "walls": (np.array(share_of_wall) >= _RIGHT_SHARE).astype(float),
-        "openings": _judge_openings(plan, moved(floorplan.centrelines_m(plan.openings)), true),
-        "rooms": (np.array(ious) > 0.5).astype(float),
-    }
-
-
-def _share_near(line_m: FloatArray, true_m: FloatArray) -> float:
-    return length_metrics.compare_lines(line_m[None], true_m, _WITHIN_M).correctness
-
-
-def _mean(values: FloatArray, weights: FloatArray, chosen: BoolArray) -> float:
-    """Return the weighted mean of the chosen values, 0 without any."""
-    return float(np.average(values[chosen], weights=weights[chosen])) if chosen.any() else 0.0
-
-
-def _iou(area: Any, room: Any) -> float:
-    return shapely.intersection(area, room).area / shapely.union(area, room).area
-
-
-def _judge_openings(plan: Any, lines_m: FloatArray, true: Any) -> FloatArray:
-    """Return whether openings are what they are drawn as, NaN of unknown gaps.
-
-    A true one of the kind lies where its middle is, and no other drawn one lies nearer to that;
-    how wide it is does not count. A passage is also where floor is free without a wall.
-    """
-    kinds = np.array([_KINDS.get(kind, "") for kind in plan.openings["type"]], object)
-    right = np.where(kinds == "", np.nan, 0.0)
-    for kind, true_m in (("door", true.doors_m), ("window", true.windows_m)):
-        rows = np.flatnonzero(kinds == kind)
-        right[rows[_pair_middles(lines_m[rows], true_m)]] = 1.0
-    lines = shapely.linestrings(lines_m)
-    free_m = shapely.length(shapely.intersection(lines, shapely.union_all(true.rooms)))
-    is_free = free_m >= _RIGHT_SHARE * shapely.length(lines)
-    right[(plan.openings["type"] == "passage") & is_free] = 1.0
-    return right
-
-
-def _pair_middles(lines_m: FloatArray, true_m: FloatArray) -> IntArray:
-    """Return the rows of lines (n, 2, 2) whose middles lie in true ones, of each the nearest."""
-    middles = shapely.points(lines_m.mean(axis=1))
-    half_m = np.full(len(true_m), opening_metrics.WALL_M)
-    within = floorplan.buffer_lines(true_m, half_m)
-    row, other = shapely.STRtree(within).query(middles, predicate="within")
-    apart_m = shapely.distance(middles[row], shapely.points(true_m.mean(axis=1))[other])
-    order = np.argsort(apart_m, kind="stable")
-    _, first = np.unique(other[order], return_index=True)
-    return row[order][first]
-
-
-def _join(rows: Mapping[str, Any], names: Sequence[str], table: str) -> tuple[Any, FloatArray]:
-    parts = [part[table] for name in names for part in rows[name]]
-    right = np.concatenate([right for _, right in parts])
+def join_rows(found: Iterable[Rated], table: str) -> tuple[Features, FloatArray]:
+    """Return the features of all elements of a table that are judged, and which (n,) are right."""
+    parts = list(found)
+    right = np.concatenate([rated.right[table] for rated in parts])
     known = np.isfinite(right)
-    features = {
-        name: np.concatenate([features[name] for features, _ in parts])[known]
-        for name in parts[0][0]
-    }
-    return features, right[known]
+    names = list(parts[0].features[table])
+    return {
+        name: np.concatenate([rated.features[table][name] for rated in parts])[known]
+        for name in names
+    }, right[known]
 
 
-def _fit_tables(rows: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-    return {table: _fit(*_join(rows, names, table)) for table in floorplan.NUMBERS}
+def fit_tables(found: Sequence[Rated]) -> dict[str, Any]:
+    """Return a model of each table."""
+    return {table: fit(*join_rows(found, table)) for table in floorplan.NUMBERS}
 
 
-def _rate_tables(
-    rows: Mapping[str, Any], names: Sequence[str], fitted: Mapping[str, Any], level: float
-) -> dict[str, Rating]:
-    """Return, by table, of elements how likely they are, whether right, and whether flagged."""
-    ratings: dict[str, Rating] = {}
-    for table, model in fitted.items():
-        features, right = _join(rows, names, table)
-        p_true, _ = confidence.weigh_features(features, model)
-        ratings[table] = (p_true, right, p_true < level)
-    return ratings
-
-
-def _join_ratings(ratings: Iterable[Rating]) -> Rating:
-    p_true, right, verify = (np.concatenate(part) for part in zip(*ratings, strict=True))
-    return p_true, right, verify
-
-
-def _choose_level(
-    rows: Mapping[str, Any], names: Sequence[str], fitted: Mapping[str, Any]
-) -> float:
-    """Return the level below which a share of the right elements lies, of whatever kind.
-
-    Probabilities of walls and of rooms mean the same: one level misses the fewest wrong elements.
-    """
-    p_true, right, _ = _join_ratings(_rate_tables(rows, names, fitted, 0.0).values())
-    return round(float(np.quantile(p_true[right == 1], _RIGHT_FLAGGED)), 3)
-
-
-def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any]:
+def fit(features: Features, right: FloatArray) -> dict[str, Any]:
     """Fit a logistic model whose features speak for an element only.
 
-    What few surveys seem to teach against reason (the more scans, the less likely) holds on no
-    other.
+    What few floors seem to teach against reason (the more rays agree, the less likely) holds on no
+    other. A feature that says nothing is left out.
     """
     values = np.column_stack(list(features.values()))
-    mean, scale = values.mean(axis=0), np.maximum(values.std(axis=0), 1e-6)
+    is_known = np.isfinite(values)
+    mean = np.nan_to_num(
+        np.where(is_known, values, 0).sum(axis=0) / np.maximum(is_known.sum(axis=0), 1)
+    )
+    off = np.where(is_known, values - mean, 0.0)
+    scale = np.maximum(off.std(axis=0), 1e-6)
     # the first column has the intercept, which is not held small
-    standard = np.column_stack([np.ones(len(right)), (values - mean) / scale])
+    standard = np.column_stack([np.ones(len(right)), off / scale])
     sign = 2 * right - 1
 
     def lose(weights: FloatArray) -> tuple[float, FloatArray]:
@@ -289,41 +182,130 @@ def _fit(features: Mapping[str, FloatArray], right: FloatArray) -> dict[str, Any
     start = np.zeros(len(bounds))
     weights = optimize.minimize(lose, start, jac=True, bounds=bounds, method="L-BFGS-B").x
     return {
-        "intercept": round(float(weights[0]), 4),
+        "intercept": round(float(weights[0]), 2),
         "features": {
-            name: {"mean": round(float(m), 4), "weight": round(float(w), 4)}
-            for name, m, w in zip(features, mean, weights[1:] / scale, strict=True)
+            name: {"mean": round(float(m), 2), "weight": round(float(w / s), 2)}
+            for name, m, w, s in zip(features, mean, weights[1:], scale, strict=True)
+            if w > _LEAST_WEIGHT
         },
     }
 
 
-def _report(chart: Any, ratings: Mapping[str, Rating], title: str) -> None:
-    for table, rating in ratings.items():
-        _print_line(f"{title}, {table}", *rating)
-    p_true, right, verify = _join_ratings(ratings.values())
-    _print_line(f"{title}, all", p_true, right, verify)
-    bins = np.minimum((p_true * _BINS).astype(int), _BINS - 1)
-    used = np.unique(bins)
-    chart.plot([0, 1], [0, 1], color="0.7")
-    said = [p_true[bins == b].mean() for b in used]
-    held = [right[bins == b].mean() for b in used]
-    chart.plot(said, held, "o-")
-    for b, x, y in zip(used, said, held, strict=True):
-        chart.annotate(f"{(bins == b).sum()}", (x, y), (4, -12), textcoords="offset points")
-    chart.set(title=title, xlabel="stated probability")
-    chart.set_ylabel("share that is right")
-    chart.title.set_fontsize(7)
+def choose_tempers(real: Sequence[Rated], models: Mapping[str, Any]) -> dict[str, float]:
+    """Return by table how much of the log odds of a fit holds on real floors: what is likeliest.
+
+    All of them where no truth of a real floor judges a table.
+    """
+
+    def surprise(table: str, temper: float) -> float:
+        softened = soften_models(models, dict.fromkeys(models, temper))
+        judged = _judge(real, softened)[table]
+        p = np.clip(judged.p_true, 1e-6, 1 - 1e-6)
+        return -float(np.log(np.where(judged.right, p, 1 - p)).sum())
+
+    return {table: min(_TEMPERS, key=partial(surprise, table)) if real else 1.0 for table in models}
 
 
-def _print_line(what: str, p_true: FloatArray, right: FloatArray, verify: BoolArray) -> None:
-    bins = np.minimum((p_true * _BINS).astype(int), _BINS - 1)
-    error = sum(abs(p_true[bins == b].sum() - right[bins == b].sum()) for b in range(_BINS)) / len(
-        right
+def soften_models(models: Mapping[str, Any], tempers: Mapping[str, float]) -> dict[str, Any]:
+    """Return models whose log odds are so many times as great."""
+    return {
+        table: {
+            "intercept": round(tempers[table] * model["intercept"], 2),
+            "features": {
+                name: known | {"weight": round(tempers[table] * known["weight"], 2)}
+                for name, known in model["features"].items()
+            },
+        }
+        for table, model in models.items()
+    }
+
+
+def _leave_out(tuning: Sequence[Rated], tempers: Mapping[str, float]) -> dict[str, Judged]:
+    """Return by table how likely elements are said to be by fits without their kind of building."""
+    parts: list[dict[str, Judged]] = []
+    for kind in sorted({rated.floor.kind for rated in tuning}):
+        models = fit_tables([rated for rated in tuning if rated.floor.kind != kind])
+        own = [rated for rated in tuning if rated.floor.kind == kind]
+        parts.append(_judge(own, soften_models(models, tempers)))
+    return {table: _join([part[table] for part in parts]) for table in floorplan.NUMBERS}
+
+
+def choose_limits(left_out: Iterable[Judged]) -> dict[str, float]:
+    """Return the level below which elements are flagged, and what no probability is above.
+
+    Probabilities of walls and of rooms mean the same: one level misses the fewest wrong elements.
+    The surest of what was left out are right so often, and what a fit says beyond is not known.
+    """
+    judged = _join(list(left_out))
+    level = float(np.quantile(judged.p_true[judged.right], _RIGHT_FLAGGED))
+    is_surest = judged.p_true >= np.quantile(judged.p_true, 1 - _SUREST_SHARE)
+    return {"level": round(level, 3), "most": round(float(judged.right[is_surest].mean()), 3)}
+
+
+def _judge(found: Sequence[Rated], models: Mapping[str, Any]) -> dict[str, Judged]:
+    judged: dict[str, Judged] = {}
+    for table in floorplan.NUMBERS:
+        features, right = join_rows(found, table)
+        p_true, _ = confidence.weigh_features(features, models[table])
+        raw = Judged(p_true, right == 1, np.zeros(len(right), bool))
+        judged[table] = _limit(raw, models.get("most", 1.0), models.get("level", 0.0))
+    return judged
+
+
+def _limit(judged: Judged, most: float, level: float) -> Judged:
+    p_true = np.minimum(judged.p_true, most)
+    return Judged(p_true, judged.right, p_true < level)
+
+
+def _join(parts: Sequence[Judged]) -> Judged:
+    return Judged(
+        np.concatenate([part.p_true for part in parts]),
+        np.concatenate([part.right for part in parts]),
+        np.concatenate([part.flagged for part in parts]),
     )
-    wrong = right == 0
-    print(
-        f"{what}: {len(right)} elements, {wrong.sum()} wrong; calibration error {error:.3f};"
-        f" flagged {verify[wrong].mean() if wrong.any() else np.nan:.2f} of the wrong,"
-        f" {verify[~wrong].mean():.3f} of the right",
-        flush=True,
-    )
+
+
+def _find_errors(of_tables: Mapping[str, Judged]) -> dict[str, float]:
+    """Return by how much probabilities are off, in the mean of the elements of each table."""
+    errors = {
+        table: flag_scores.measure_flags("x", judged.right, judged.flagged, judged.p_true)
+        for table, judged in of_tables.items()
+    }
+    return {
+        table: round(found["x_calibration_error"], 2)
+        for table, found in errors.items()
+        if found["x_n"]
+    }
+
+
+def _draw(charts: Mapping[tuple[str, str], Mapping[str, Judged]], figure: Path) -> None:
+    """Draw reliability diagrams, and print a line for each table."""
+    sheet, axes = plt.subplots(2, 3, figsize=(12, 8), sharex=True, sharey=True)
+    print("| floors | table | n | wrong | ECE | wrong flagged | right flagged | p >= .99: right |")
+    for (name, half), of_tables in charts.items():
+        row, column = ("space", "plane").index(name), HALVES.index(half)
+        chart = axes[row, column]
+        chart.plot([0, 1], [0, 1], color="0.7")
+        for table, judged in {**of_tables, "all": _join(list(of_tables.values()))}.items():
+            if not len(judged.right):
+                continue
+            said = flag_scores.measure_flags("x", judged.right, judged.flagged, judged.p_true)
+            print(
+                f"| {name}, {half} | {table} | {said['x_n']} | {said['x_n_wrong']} |"
+                f" {said['x_calibration_error']:.3f} | {said['x_wrong_flagged']:.2f} |"
+                f" {said['x_right_flagged']:.3f} |"
+                f" {said['x_sure_n']}: {said['x_sure_right']:.3f} |",
+                flush=True,
+            )
+            bins = [i for i in range(flag_scores.BINS) if said[f"x_bin_{i}_n"]]
+            chart.plot(
+                [said[f"x_bin_{i}_p"] for i in bins],
+                [said[f"x_bin_{i}_right"] for i in bins],
+                "o-",
+                label=table,
+            )
+        chart.set(
+            title=f"{name}, {half}", xlabel="stated probability", ylabel="share that is right"
+        )
+        chart.legend(fontsize=7)
+    sheet.savefig(figure, dpi=110, bbox_inches="tight")

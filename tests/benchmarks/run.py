@@ -8,7 +8,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py compare FOLDER FOLDER
        run.py ablate FOLDER [SURVEY | HALF | KIND | subset | RULE ...]
        run.py fit_things FOLDER [HALF | KIND | FLOOR ...]
-       run.py confidence FOLDER SURVEY,... SURVEY,...
+       run.py confidence FOLDER
        run.py next_visit FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
@@ -41,9 +41,9 @@ reported on is left out.
 that `realistic` has finished in FOLDER, and prints the table for `plan/model/things.py`, and what
 it is worth on kinds of buildings that it was not fitted on.
 
-`confidence` fits how likely elements of a plan are right on the first of the surveys in a folder
-that `guard` has made, tests it on the others, and writes the coefficients into the package, with a
-reliability diagram in that folder.
+`confidence` fits how likely elements of a plan are right on the tuning floors that `realistic` has
+finished in FOLDER, prints how well that holds on the others, and writes the coefficients into the
+package, with a reliability diagram in FOLDER.
 
 `growth` runs the default target on drives that are 1, 2, 4 and 8 times as long, as many rooms or
 as wide (or as many TIMES as are said), and on a hall of glass with and without ground around it,
@@ -184,18 +184,15 @@ def fit_things(folder: str, *names: str) -> None:
     fit_things.bench(Path(folder), names, SETTINGS)
 
 
-def fit_confidence(folder: str, train: str, test: str) -> None:
+def fit_confidence(folder: str) -> None:
     """Write the coefficients of the confidence in a plan's elements."""
     import confidence_bench
 
     package = ROOT / "scripts/scanplan/validation"
     confidence_bench.bench(
-        Path(folder) / "code/results",
-        train.split(","),
-        test.split(","),
+        Path(folder),
         coefficients=package / "confidence_coefficients.py",
         figure=Path(folder) / "reliability.png",
-        settings=SETTINGS,
     )
 
 

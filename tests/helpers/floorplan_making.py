@@ -89,6 +89,8 @@ def walls(rows=WALLS):
         "sigma_end1_m": np.full(n, 0.02),
         "n_points": np.full(n, 500, np.int64),
         "n_scans": np.full(n, 3, np.int32),
+        "p_wall": np.full(n, 0.98),
+        "p_solid": np.full(n, 0.99),
         "verify": np.array([row[4] == "inferred" for row in rows], bool),
         "corrected": np.full(n, "", object),
     }

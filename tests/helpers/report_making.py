@@ -135,6 +135,7 @@ def confidence():
                 "number": made[number],
                 "p_true": np.where(verify, 0.5, 0.99),
                 "verify": verify,
+                "about": np.where(verify, "existence", "").astype(object),
                 "doubt": np.where(verify, "few points", "").astype(object),
                 "needs_person": np.zeros(n, bool),
             }

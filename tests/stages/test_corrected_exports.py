@@ -129,9 +129,9 @@ def test_who_has_looked_at_an_element_need_not_verify_it(tmp_path):
     validation = {name: np.zeros(1) for name in schemas.VALIDATION.columns}
     validation["kind"] = np.array(["plan_rays"], object)
     # a level that nothing reaches
-    strict = COEFFICIENTS | {"level": 2.0}
+    strict = {name: models | {"level": 2.0} for name, models in COEFFICIENTS.items()}
     seen = replace(floorplan_files.read_floorplan(files), floor_z_m=0.0)
-    rated = confidence.rate_elements(seen, validation, strict)
+    rated = confidence.rate_elements(seen, validation, 0.05, strict)
     files["confidence"] = tmp_path / "confidence.parquet"
     tables.write_table(files["confidence"], schemas.CONFIDENCE, rated)
     plan = floorplan_files.read_floorplan(files)

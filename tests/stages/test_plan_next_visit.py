@@ -37,6 +37,7 @@ def planned(house, folder, doubtful=()):
             "number": numbers.astype(np.int32),
             "p_true": np.where(verify, 0.4, 0.99),
             "verify": verify,
+            "about": np.where(verify, "existence", "").astype(object),
             "doubt": np.where(verify, "few scans", "").astype(object),
             "needs_person": np.zeros(len(numbers), bool),
         })  # fmt: skip

@@ -126,7 +126,9 @@ def test_the_reports_of_a_building_lead_to_each_other(tmp_path):
 
 def test_what_to_verify_comes_before_all_tables(report):
     text = report.read_text()
-    listed = re.findall(r'data-show="([^"]*)"><b>([^<]*)</b> ([^<]*)<', text)
+    listed = re.findall(
+        r'data-show="([^"]*)">[^<]*<span class="note"><b>([^<]*)</b> ([^<]*)<', text
+    )
     assert listed == [("wall 2", "Wall 2", "few points")]
     assert text.index("data-show=") < text.index("<table")
 

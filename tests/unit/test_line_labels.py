@@ -273,3 +273,14 @@ class TestPriors:
         ends = np.zeros((1, 1, 2, N_ENDS))
         ends[0, 0, OBLIQUE, end] = 3
         assert priors.weigh_states(ends)[0, 0].argmax() == state
+
+
+def test_what_may_be_an_opening_is_as_long_as_it_is_likely_at_once():
+    """Between places 0.3 m apart a window is likely at two, a door at one, which is too narrow."""
+    shares = np.zeros((4, len(priors.KINDS)))
+    shares[:, priors.SOLID] = 1.0
+    shares[1:3, priors.WINDOW] = (0.3, 0.45)
+    shares[3, priors.DOOR] = 0.4
+    (found,) = line_labels.find_nearly(shares, 1 + 0.3 * np.arange(5))
+    assert (found.kind, found.p) == ("window", 0.45)
+    np.testing.assert_allclose((found.low_m, found.high_m), (1.3, 1.9))

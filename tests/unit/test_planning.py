@@ -340,6 +340,8 @@ class TestEvidence:
         # nothing is known of the poses: all may be off together, as one scan usually is
         np.testing.assert_allclose(made.walls["sigma_offset_m"], 0.02, rtol=1e-3)
         assert not made.walls["verify"].any()
+        for name in ("p_wall", "p_solid"):
+            assert (made.walls[name] > 0.5).all()
 
     def test_a_wall_that_few_points_show_is_to_be_verified(self):
         known = {
@@ -356,9 +358,10 @@ class TestEvidence:
             "observed": 1.0,
         }
         assert not uncertainty.WallEvidence(**known, **sure).needs_a_visit(TRUST)
+        free_end = {"sigma_end_m": (0.01, 0.1)}
+        assert not uncertainty.WallEvidence(**known, **(sure | free_end)).needs_a_visit(TRUST)
         for doubt in (
             {"sigma_offset_m": 0.1},
-            {"sigma_end_m": (0.01, 0.1)},
             {"scans": np.arange(1)},
             {"observed": 0.2},
         ):

@@ -55,10 +55,10 @@ def test_doubts_are_taken_where_the_tables_have_them():
     faces["doubt"] = np.where(faces["verify"], "short", "")
     plan = floorplan_making.plan(faces=faces, rooms=rooms, openings=openings)
     assert [(d.element, d.name, d.reason) for d in list_doubts(plan)] == [
-        ("opening 2", "Window 2", "no sill seen"),
-        ("opening 0", "Door 0", "few rays"),
-        ("wall 2", "Wall 2", "few scans show it, or its place is uncertain"),
         ("room 1", "Room 1", "its outline is not closed: the area is a guess"),
+        ("wall 2", "Wall 2", "few scans show it, or its place is uncertain"),
+        ("opening 0", "Door 0", "few rays"),
+        ("opening 2", "Window 2", "no sill seen"),
         ("face 1", "Face 1 of wall 1", "short"),
         ("face 8", "Face 8", "short"),
     ]

@@ -63,14 +63,6 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
     assert doubtful.startswith("2 openings (1, 0), 1 wall (2) to verify on site")
 
 
-def test_a_plan_whose_elements_are_not_rated_says_so():
-    made = floorplan_making.walls()
-    n = len(made["wall"])
-    unrated = {"p_true": np.full(n, np.nan), "verify": np.zeros(n, bool)}
-    unrated["doubt"] = np.full(n, "", object)
-    assert "no confidence scores" in told_of(plan(walls=made | unrated))["doubtful"]
-
-
 def test_an_unknown_prediction_is_no_number():
     unknown = PredictionFacts(
         0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"

@@ -76,6 +76,8 @@ class TestWholePlan:
         lines = shapely.linestrings(ends_m(made.walls))
         long = lines[shapely.length(lines) > 0.3]
         assert len(long) == 5
+        for name in ("p_wall", "p_solid"):
+            assert (made.walls[name][shapely.length(lines) > 0.3] > 0.5).all()
         assert shapely.length(long).sum() == pytest.approx(8 + 8 + 4 + 4 + 4, abs=0.3)
 
 

@@ -43,6 +43,7 @@ class TestParts:
         ((part, top_m),) = parts(wall, looked)
         assert (part.low_m, part.high_m) == (0, 5) and np.isnan(top_m)
         assert part.openings == [] and part.closed == []
+        assert 0.9 < part.p_solid <= 1
 
     def test_a_door_cuts_the_faces_and_not_the_wall(self):
         wall, looked = paired(
@@ -171,6 +172,19 @@ class TestLowParts:
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)
         assert [features.overlooked for features in asked] == [0, pytest.approx(1, abs=0.05)]
         assert np.isnan(found.tops_m).all()
+
+    @pytest.mark.parametrize(("p_wall", "n_nearly"), [(0.4, 1), (0.2, 0)])
+    def test_what_is_hardly_likelier_something_else_is_nearly_a_wall(
+        self, monkeypatch, p_wall, n_nearly
+    ):
+        p = np.array([[1.0, 0, 0, 0], [p_wall, 1 - p_wall, 0, 0]])
+        monkeypatch.setattr(things, "weigh_things", lambda features: p)
+        wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
+        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
+        assert [part.p_wall for part in found.walls] == [1.0]
+        assert [(near.kind, near.p) for near in found.nearly] == [("wall", p_wall)] * n_nearly
+        for near in found.nearly:
+            np.testing.assert_allclose(np.sort(near.ends_m[:, 0]), (3, 5), atol=0.06)
 
     def test_it_stays_where_both_sides_were_seen(self):
         scans = self.look() + self.look(SOUTH_M, -0.2)

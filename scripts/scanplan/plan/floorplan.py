@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.plan import wall_footprints
+from scanplan.plan.plan_wall import Nearly
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays import free_space, levels
@@ -109,6 +110,8 @@ class FloorPlan:
         Of each that is not, why.
     doubted : doubts.Doubts
         What speaks against all of the plan.
+    nearly : sequence of plan_wall.Nearly
+        What was nearly drawn.
     """
 
     name: str
@@ -127,6 +130,7 @@ class FloorPlan:
     n_corrections: int = 0
     unmatched_corrections: Sequence[str] = ()
     doubted: Doubts = NO_DOUBT
+    nearly: Sequence[Nearly] = ()
 
     @property
     def mark(self) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from scanplan.plan.floorplan import NUMBERS, FloorPlan, GeoReference, make_floorplan
+from scanplan.plan.plan_wall import Nearly
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Columns, FilePath
@@ -17,6 +18,7 @@ UNRATED = "not rated, as the stage that rates it failed"
 _UNSEEN: dict[str, float | str] = {
     "p_true": 0.0,
     "verify": True,
+    "about": "existence",
     "doubt": "not seen",
     "needs_person": False,
 }
@@ -63,7 +65,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
             table: _join_confidence(table, columns, rated, otherwise)
             for table, columns in parts.items()
         }
-    wanted = {}
+    wanted: dict[str, Columns] = {}
     if "furniture" in files:
         wanted["furniture"] = read("furniture", schemas.FURNITURE)
     reference = tables.read_note(files["free"], schemas.FREE, "georeference")
@@ -79,8 +81,21 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
             tables.read_note(files["free"], schemas.FREE, "unmatched_corrections") or "[]"
         ),
         doubted=doubted,
+        nearly=[
+            Nearly(of["kind"], np.array(of["ends_m"]), of["p"])
+            for of in json.loads(tables.read_note(files["free"], schemas.FREE, "nearly") or "[]")
+        ],
         **assumed_m,
     )
+
+
+def format_nearly(nearly: Sequence[Nearly]) -> str:
+    """Return what was nearly drawn as the note `nearly` of `schemas.FREE`, to the millimetre."""
+    rows = [
+        {"kind": of.kind, "ends_m": np.round(of.ends_m, 3).tolist(), "p": round(of.p, 3)}
+        for of in nearly
+    ]
+    return json.dumps(rows)
 
 
 def _read_rated(

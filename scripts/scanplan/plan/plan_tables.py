@@ -115,6 +115,8 @@ def wall_columns(
             "sigma_end1_m": sigma_end_m,
             "n_points": known.n_points,
             "n_scans": len(known.scans),
+            "p_wall": wall.p_wall,
+            "p_solid": wall.p_solid,
             "verify": doubtful[number],
             "corrected": "",
         }

@@ -32,6 +32,15 @@ class InferredFace(Span):
 
 
 @dataclass(frozen=True, eq=False)
+class Nearly:
+    """What was nearly drawn: wall, door, window or glass, its ends (2, 2), and how likely it is."""
+
+    kind: str
+    ends_m: FloatArray
+    p: float
+
+
+@dataclass(frozen=True, eq=False)
 class PlanWall(Span):
     """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
 
@@ -50,6 +59,11 @@ class PlanWall(Span):
         Ways through, and gaps taken for wall; in order along it.
     inferred : list of InferredFace
         What else it has of faces, once `wall_faces` has cut them.
+    p_wall, p_solid : float
+        Probability that it is a wall, no leaf, furniture or what is outside; and of its stretches
+        between openings that they are solid, in the mean of their length. NaN: not weighed.
+    nearly : sequence of Nearly
+        Openings that it nearly has.
     """
 
     line: Line
@@ -61,6 +75,9 @@ class PlanWall(Span):
     openings: list[Opening] = field(default_factory=list)
     closed: list[Opening] = field(default_factory=list)
     inferred: list[InferredFace] = field(default_factory=list)
+    p_wall: float = math.nan
+    p_solid: float = math.nan
+    nearly: Sequence[Nearly] = ()
 
     @property
     def members(self) -> list[FaceInterval]:

@@ -22,7 +22,13 @@ from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
-from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, list_faces, usual_thickness_m
+from scanplan.plan.plan_wall import (
+    Nearly,
+    PlanWall,
+    greatest_thickness_m,
+    list_faces,
+    usual_thickness_m,
+)
 from scanplan.plan.rooms import room_bounds
 from scanplan.plan.rooms.room import Room
 from scanplan.plan.rooms.room_outlines import find_rooms
@@ -95,6 +101,8 @@ class Plan:
         Lines of faces, and those dropped.
     range_errors_m : (181,) float64
         What ranges were shortened by, see `range_bias.estimate_range_bias`.
+    nearly : list of plan_wall.Nearly
+        What was nearly drawn.
     """
 
     faces: dict[str, Array]
@@ -107,6 +115,7 @@ class Plan:
     n_lines: int
     n_dropped: int
     range_errors_m: FloatArray
+    nearly: list[Nearly]
 
 
 def make_plan_settings(
@@ -235,6 +244,7 @@ def make_plan(
         n_lines=surfaces.n_lines,
         n_dropped=surfaces.n_dropped,
         range_errors_m=errors_m,
+        nearly=surfaces.nearly,
     )
 
 
@@ -255,6 +265,8 @@ class _Surfaces:
         Doors, from jamb to jamb: in fronts of glass, and where leaves stand open in planar scans.
     open_leaves_m : list of (2, 2) float64
         The surfaces of open leaves that labels tell from walls, from end to end.
+    nearly : list of Nearly
+        What was nearly drawn.
     n_lines, n_dropped : int
         As in `Plan`.
     """
@@ -266,6 +278,7 @@ class _Surfaces:
     furnished: list[BaseGeometry]
     ways_m: list[FloatArray]
     open_leaves_m: list[FloatArray]
+    nearly: list[Nearly]
     n_lines: int
     n_dropped: int
 
@@ -358,6 +371,7 @@ class _Survey:
             furnished=furnished,
             ways_m=[*(leaf.way_m for leaf in leaves), *glass.ways_m],
             open_leaves_m=labelled.leaves_m,
+            nearly=labelled.nearly,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
         )

@@ -24,7 +24,7 @@ class ReviewCriteria:
     Attributes
     ----------
     max_sigma_m : float, > 0
-        Of a wall's offset or of one of its ends.
+        Of a wall's offset.
     min_scans : int, >= 1
     min_observed : float, 0 to 1
         Share of a wall's length, openings aside, that points show.
@@ -71,10 +71,9 @@ class WallEvidence:
     observed: float
 
     def needs_a_visit(self, criteria: ReviewCriteria) -> bool:
-        """Return whether someone should verify the wall on site."""
-        sigma_m = max(self.sigma_offset_m, *self.sigma_end_m)
+        """Return whether someone should verify the wall on site, wherever it ends."""
         return (
-            sigma_m > criteria.max_sigma_m
+            self.sigma_offset_m > criteria.max_sigma_m
             or len(self.scans) < criteria.min_scans
             or self.observed < criteria.min_observed
         )

@@ -181,6 +181,7 @@ def select_validation(settings: Settings) -> Keywords:
     """Return the keywords of `prediction.ValidationSettings`."""
     plan = select_section(settings, "plan")
     sigma = {"registration_sigma_m": plan["merge"]["registration_sigma_m"]}
+    sigma |= {"max_sigma_m": plan["trust"]["max_sigma_m"]}
     return plan["validation"] | sigma | {"seed": settings["seed"]}
 
 

@@ -12,7 +12,7 @@ from scanplan.report.templates import render_template
 from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
-from scanplan.validation.doubts import list_doubts
+from scanplan.validation.doubts import list_to_verify
 
 MADE, FAILED, MISSING = "plan", "failed", "no plan"
 """What became of a dataset: it has a plan, a stage of it failed, it was not got to."""
@@ -96,7 +96,7 @@ def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
         "rooms": len(plan.rooms["room"]),
         "open_rooms": int((~plan.rooms["closed"]).sum()),
         "walls": len(plan.walls["wall"]),
-        "verify": len(list_doubts(plan)),
+        "verify": len(list_to_verify(plan)),
         **{f"{kind}s": int((kinds == kind).sum()) for kind in floorplan.OPENINGS},
         "predicted": float(validation["share"][-1]),
     }

@@ -78,6 +78,7 @@ def report_page(
     objective, _ = wording.method_objective(of_plan["method"])
     curves = _curves(survey, of_plan, objective)
     n_scans = len(survey.selection["rank"])
+    found = doubts.list_doubts(plan)
     return templates.render_template(
         sources,
         "page.html.j2",
@@ -94,7 +95,13 @@ def report_page(
         facts=wording.head_figures(plan, survey),
         links=result_links.link_results(run.results),
         storeys=run.storeys,
-        doubts=doubts.list_doubts(plan),
+        doubts=[
+            doubts.group_by_room(part) for part in (found[: doubts.MOST], found[doubts.MOST :])
+        ],
+        n_more=len(found[doubts.MOST :]),
+        n_doubts=len(found),
+        nearly=doubts.list_nearly(plan),
+        confidence=wording.confidence_note(plan),
         plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
         opening_kinds=_list_opening_kinds(plan),
         visit=survey.visit.summary,

@@ -10,10 +10,11 @@ from scanplan.plan import floorplan
 from scanplan.project.texts import fold_line
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
-from scanplan.validation.doubts import list_doubts, list_unrated
+from scanplan.validation.doubts import list_to_verify, list_unrated
 from scanplan.validation.verdict import judge_plan
 
 _INDENT = 9  # of the longest word before a line, `doubtful`
+_KINDS = ("opening", "wall", "room", "face")  # in the order of a summary
 
 
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
@@ -63,7 +64,8 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
 def _count_doubts(plan: floorplan.FloorPlan) -> list[str]:
     """Return in a phrase which elements to verify on site, the few of a kind by their numbers."""
     named: list[str] = []
-    for kind, group in groupby(list_doubts(plan), attrgetter("kind")):
+    found = sorted(list_to_verify(plan), key=lambda doubt: _KINDS.index(doubt.kind))
+    for kind, group in groupby(found, attrgetter("kind")):
         numbers = [doubt.number for doubt in group]
         few = f" ({', '.join(map(str, numbers))})" if len(numbers) <= MOST_NAMED else ""
         named.append(_count(len(numbers), kind) + few)

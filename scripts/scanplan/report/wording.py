@@ -12,6 +12,8 @@ from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.stage.witnesses import rank_findings
 from scanplan.types import Columns
 from scanplan.validation import doubts
+from scanplan.validation.confidence import is_planar
+from scanplan.validation.confidence_coefficients import COEFFICIENTS
 from scanplan.validation.verdict import is_note
 
 _OBJECTIVES = {"wall_length": ("wall shown", "m"), "visibility": ("free space seen", "m²")}
@@ -84,7 +86,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     recorded = state_date(int(survey.poses["t_ns"][0]), "%Y-%m-%d %H:%M UTC")
     thickness_m = plan.walls["thickness_m"][plan.thick]
     thickness = f"{1000 * np.median(thickness_m):.0f} mm" if len(thickness_m) else "not known"
-    counts = Counter(doubt.kind for doubt in doubts.list_doubts(plan))
+    counts = Counter(doubt.kind for doubt in doubts.list_to_verify(plan))
     reference = plan.georeference
     placed = [] if reference is None else [("on Earth", state_reference(reference))]
     to_verify = [f"{n:,} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items()]
@@ -130,6 +132,24 @@ def review_note(plan: floorplan.FloorPlan) -> str:
         " pose uncertainty and the spread of points."
         f" {n_to_verify:,} of {len(plan.walls['wall']):,} walls are weakly supported: verify them"
         " on site. A row chosen here is shown in the plan."
+    )
+
+
+def confidence_note(plan: floorplan.FloorPlan) -> str:
+    """Return where probabilities come from, and by how much they were off elsewhere."""
+    off = COEFFICIENTS["plane" if is_planar(plan) else "space"]["off"]
+
+    def listed(half: str) -> str:
+        return ", ".join(f"{table} by {error:.2f}" for table, error in off[half].items())
+
+    known = f"on real floors with a truth drawn by hand {listed('real')}" if "real" in off else ""
+    unknown = [table for table in floorplan.NUMBERS if table not in off.get("real", {})]
+    rest = f"of {', '.join(unknown)} nobody has measured it on real floors" if unknown else ""
+    return (
+        "How likely elements are was learned from simulated surveys. In other simulated buildings"
+        f" probabilities were off in the mean: {listed('reporting')}; "
+        + "; ".join(filter(None, [known, rest]))
+        + ". Read a probability as so much more or less."
     )
 
 

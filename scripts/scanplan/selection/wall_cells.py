@@ -139,7 +139,9 @@ class MapScans(Protocol):
     """Scans in the map frame, as `tables.ScanStore` and `arrays.PlacedScans` read them."""
 
     planar: bool
-    scan_ids: IntArray
+
+    @property
+    def scan_ids(self) -> IntArray: ...  # noqa: D102
 
     def scans(self, scan_ids: IntArray) -> Iterable[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m) of these scans."""

@@ -239,7 +239,7 @@ FACES = Schema(
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 PLAN_WALLS = Schema(
     "plan_walls",
-    3,
+    4,
     {
         "wall": "int32",
         **_CENTRELINE,
@@ -261,6 +261,7 @@ PLAN_WALLS = Schema(
         ),
         "n_points": "int64",
         "n_scans": "int32",
+        **dict.fromkeys(("p_wall", "p_solid"), "float64"),
         "verify": "bool",
         "corrected": "string",
     },
@@ -268,8 +269,10 @@ PLAN_WALLS = Schema(
 )
 """Walls of the plan.
 
-One seen from a single side has no thickness (NaN), and its line is that of its face. `corrected`
-says what a person said of it, here and of openings and rooms; empty where nobody did.
+One seen from a single side has no thickness (NaN), and its line is that of its face. `p_wall` is
+how likely it is a wall by what is around it, no leaf, furniture or what is outside, `p_solid` how
+likely what lies between its openings is solid, by rays (NaN: of one that a person drew).
+`corrected` says what a person said of it, here and of openings and rooms; empty where nobody did.
 """
 OPENINGS = Schema(
     "openings",
@@ -319,7 +322,8 @@ FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geo
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
-corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not.
+corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not; and
+`nearly`, what was nearly drawn: a list of `kind`, `ends_m` and `p`, JSON.
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
 """Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""
@@ -401,12 +405,13 @@ The file states `n_left_out` and `n_scans` (scans left out, and drawn of them), 
 """
 CONFIDENCE = Schema(
     "confidence",
-    2,
+    3,
     {
         "table": "string",
         "number": "int32",
         "p_true": "float64",
         "verify": "bool",
+        "about": "string",
         "doubt": "string",
         "needs_person": "bool",
     },
@@ -415,11 +420,13 @@ CONFIDENCE = Schema(
 """How likely elements of a plan exist as they are drawn.
 
 `table` is walls, faces, openings or rooms, `number` that of the element in it; `p_true` is NaN of
-a plan without heights above the floor. `verify` says that `p_true` is below the level of its kind
-(`validation/confidence_coefficients.py`), that a wall is weakly supported, that it is not known
-what a gap is, or a pane of a planar survey, or that a room is not closed or most of its walls are
-to be verified; `doubt` in words why, `needs_person` that it would be doubted however well it was
-seen: for its size, or as an opening in no wall.
+what a person corrected. `about` says what of an element is doubtful, empty where nothing is:
+existence or kind, where `p_true` is below the level of its survey
+(`validation/confidence_coefficients.py`), or it is not known what a gap is; the place of a wall
+that is weakly supported; the outline of a room that is not closed, or most of whose walls are to be
+verified. Those are to `verify`. What stands as it is drawn, but for its end or its width, is not.
+`doubt` says in words why, `needs_person` that it would be doubted however well it was seen: for its
+size, or as an opening in no wall.
 """
 VALIDATION_RAYS = Schema(
     "validation_rays",

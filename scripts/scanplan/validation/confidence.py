@@ -1,36 +1,54 @@
 """How likely each wall, face, opening and room of a plan exists as it is drawn, and why not.
 
-A logistic model of what is known of an element without any truth, see `element_features.py`. Its
-coefficients stand in `confidence_coefficients.py`, which `make bench ARGS="confidence ..."` writes,
-from simulated surveys.
+A logistic model of what is known of an element without any truth, see `element_features.py`: one of
+surveys in space, and one of surveys in one plane, which know less. Their coefficients stand in
+`confidence_coefficients.py`, which `make bench ARGS="confidence ..."` writes.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import shapely
 
 from scanplan.geometry import overlays
-from scanplan.plan.floorplan import NUMBERS, FloorPlan
+from scanplan.plan.floorplan import NUMBERS, FloorPlan, centrelines_m
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray
+from scanplan.validation import surroundings
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
 from scanplan.validation.element_features import (
     FIXED,
+    OF_KIND,
     OF_WALL,
     REASONS,
     describe_elements,
 )
 
+EXISTENCE, KIND, PLACE, OUTLINE, END, WIDTH = (
+    *("existence", "kind", "place", "outline"),
+    *("end", "width"),
+)
+"""What of an element is doubtful: all of it, what it is, where it is, where a room ends; of what is
+not to be verified itself, where a wall ends and how wide an opening is."""
 NOT_CLOSED = "its outline is not closed: the area is a guess"
 """Why a room is to be verified that is likely enough."""
 OF_DOUBTFUL_WALLS = "most of the walls around it are to be verified"
 """Likewise of one that is closed."""
+_SIGMAS = 2  # of an end: it lies within so many of them in 19 of 20 cases
+
+
+def is_planar(plan: FloorPlan) -> bool:
+    """Return whether a survey has seen one height alone."""
+    return not np.isfinite(plan.least_height_m)
 
 
 def rate_elements(
-    plan: FloorPlan, validation: Columns, coefficients: Mapping[str, Any] = COEFFICIENTS
+    plan: FloorPlan,
+    validation: Columns,
+    max_sigma_m: float,
+    coefficients: Mapping[str, Any] = COEFFICIENTS,
 ) -> Columns:
     """Return the columns of `schemas.CONFIDENCE` for a plan.
 
@@ -38,60 +56,99 @@ def rate_elements(
     ----------
     validation : dict of str to (n,) array
         The columns of `schemas.VALIDATION`.
+    max_sigma_m : float
+        Ends of walls with a greater standard deviation are doubtful.
     coefficients : dict
-        As `confidence_coefficients` has them: `level`, below which an element is to be verified,
-        and a model by table. They hold where heights above the floor are seen; of a plan without
-        them, such as a planar survey's, probabilities are not known (NaN).
+        As `confidence_coefficients` has them, of `space` and of `plane`: `level`, below which an
+        element is to be verified, `most`, which no probability is above, and a model by table.
     """
     described = describe_elements(plan, validation)
-    level = coefficients["level"]
-    has_heights = np.isfinite(plan.floor_z_m)
+    models = coefficients["plane" if is_planar(plan) else "space"]
     held = _find_held(plan)
-    parts: dict[str, Columns] = {}
-    # walls come before the rooms that are judged by them
-    for table, number in NUMBERS.items():
-        columns, features, model = getattr(plan, table), described[table], coefficients[table]
-        p_true, shares = weigh_features(features, model)
-        if not has_heights:
-            p_true = np.full(len(p_true), np.nan)
-        verify = p_true < level
-        p_seen, _ = weigh_features(_raise_evidence(features, model, held), model)
-        needs_person = verify & (p_seen < level)
-        doubt = _explain(shares, model["features"], verify)
-        if table == "walls":
-            is_weak = columns["verify"] & ~verify
-            doubt[is_weak] = "place or end uncertain, or hardly seen"
-            verify = verify | is_weak
-        if table == "openings":
-            is_unknown = columns["type"] == "gap"
-            p_true[is_unknown & has_heights] = 0.0
-            # in one plane beams that never came back say as much of a way out as of a pane
-            is_unknown |= (columns["type"] == "glass") & ~has_heights
-            verify[is_unknown] = True
-            needs_person[is_unknown] = False
-            doubt[is_unknown] = "not known what it is"
-        if table == "rooms":
-            is_open = ~columns["closed"] & ~verify
-            doubt[is_open] = NOT_CLOSED
-            verify = verify | is_open
-            is_weak = _have_doubtful_walls(plan, parts["walls"]["verify"]) & ~verify
-            doubt[is_weak] = OF_DOUBTFUL_WALLS
-            verify = verify | is_weak
-        if "corrected" in columns:
-            # a person has looked at it: nothing is left to verify, and rays do not rate it
-            is_by_hand = columns["corrected"] != ""
-            p_true[is_by_hand], verify[is_by_hand], doubt[is_by_hand] = np.nan, False, ""
-            needs_person[is_by_hand] = False
-        parts[table] = {
-            "table": np.full(len(p_true), table, object),
-            "number": columns[number].astype(np.int32),
-            "p_true": p_true,
-            "verify": verify,
-            "doubt": doubt,
-            "needs_person": needs_person,
+    rated = {table: _rate_table(described[table], models, table, held) for table in NUMBERS}
+    _doubt_walls(rated["walls"], plan, max_sigma_m)
+    _doubt_openings(rated["openings"], plan)
+    for table, of_table in rated.items():
+        of_table.leave_out(getattr(plan, table).get("corrected"))
+    _doubt_rooms(rated["rooms"], plan, rated["walls"].verify)
+    parts = [
+        {
+            "table": np.full(len(rated[table].p_true), table, object),
+            "number": getattr(plan, table)[NUMBERS[table]].astype(np.int32),
+            **vars(rated[table]),
         }
-    ordered = [parts[table] for table in sorted(parts)]
-    return {name: np.concatenate([part[name] for part in ordered]) for name in ordered[0]}
+        for table in sorted(rated)
+    ]
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+@dataclass(frozen=True, eq=False)
+class _Rated:
+    """The columns of `schemas.CONFIDENCE` of the elements (n,) of a table; they change in place."""
+
+    p_true: FloatArray
+    verify: BoolArray
+    about: Array
+    doubt: Array
+    needs_person: BoolArray
+
+    def add(
+        self, where: BoolArray, about: str, words: str | Sequence[str], *, verify: bool = False
+    ) -> None:
+        """Doubt elements (n,), those that are not doubted so far."""
+        chosen = where & (self.about == "")
+        self.about[chosen], self.verify[chosen] = about, verify
+        self.doubt[chosen] = np.broadcast_to(np.array(words, object), chosen.shape)[chosen]
+
+    def leave_out(self, corrected: Array | None) -> None:
+        """Rate none that a person has looked at: nothing is left to verify, and rays say less."""
+        if corrected is not None:
+            chosen = corrected != ""
+            self.p_true[chosen], self.verify[chosen] = np.nan, False
+            self.about[chosen], self.doubt[chosen], self.needs_person[chosen] = "", "", False
+
+
+def _rate_table(
+    features: Mapping[str, FloatArray],
+    models: Mapping[str, Any],
+    table: str,
+    held: Mapping[str, BoolArray],
+) -> _Rated:
+    """Rate the elements of a table by its model."""
+    model, level = models[table], models["level"]
+    p_true, shares = weigh_features(features, model)
+    verify = p_true < level
+    p_seen, _ = weigh_features(_raise_evidence(features, model, held), model)
+    about, doubt = _explain(shares, list(model["features"]), verify)
+    return _Rated(
+        np.minimum(p_true, models["most"]), verify, about, doubt, verify & (p_seen < level)
+    )
+
+
+def _doubt_walls(rated: _Rated, plan: FloorPlan, max_sigma_m: float) -> None:
+    walls = plan.walls
+    rated.add(walls["verify"], PLACE, "place uncertain, or hardly seen", verify=True)
+    sigma_m = np.fmax(walls["sigma_end0_m"], walls["sigma_end1_m"])
+    within_m = np.ceil(10 * _SIGMAS * sigma_m) / 10
+    words = [f"the wall is sure, its end within {m:.1f} m" for m in within_m.tolist()]
+    rated.add(sigma_m > max_sigma_m, END, words)
+
+
+def _doubt_openings(rated: _Rated, plan: FloorPlan) -> None:
+    is_unknown = plan.openings["type"] == "gap"
+    rated.p_true[is_unknown], rated.verify[is_unknown] = 0.0, True
+    rated.about[is_unknown], rated.doubt[is_unknown] = KIND, "not known what it is"
+    rated.needs_person[is_unknown] = False
+    seen_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
+    n_jambs = surroundings.count_joined_ends(centrelines_m(plan.openings), seen_m)
+    rated.add(n_jambs < 2, WIDTH, "a jamb was not seen: its width is not sure")
+
+
+def _doubt_rooms(rated: _Rated, plan: FloorPlan, doubtful_walls: BoolArray) -> None:
+    by_hand = plan.rooms.get("corrected", np.full(len(rated.p_true), "")) != ""
+    rated.add(~plan.rooms["closed"] & ~by_hand, OUTLINE, NOT_CLOSED, verify=True)
+    is_weak = _have_doubtful_walls(plan, doubtful_walls) & ~by_hand
+    rated.add(is_weak, OUTLINE, OF_DOUBTFUL_WALLS, verify=True)
 
 
 def _have_doubtful_walls(plan: FloorPlan, verify: BoolArray) -> BoolArray:
@@ -115,6 +172,7 @@ def weigh_features(
     Parameters
     ----------
     features : dict of str to (n,) float64
+        What is not known of one (NaN) adds nothing.
     model : dict
         `intercept`, and of each feature its `mean` and `weight`.
     """
@@ -122,6 +180,7 @@ def weigh_features(
     means = np.array([model["features"][name]["mean"] for name in names])
     weights = np.array([model["features"][name]["weight"] for name in names])
     shares = (np.column_stack([features[name] for name in names]) - means) * weights
+    shares = np.nan_to_num(shares, nan=0.0)
     logit = model["intercept"] + shares.sum(axis=1)
     return (1 + np.tanh(logit / 2)) / 2, shares
 
@@ -137,18 +196,22 @@ def _raise_evidence(
 ) -> dict[str, FloatArray]:
     """Return features that are as good as usual, but for those that no scan betters."""
     raised: dict[str, FloatArray] = {}
-    for name, values in features.items():
-        usual = np.maximum(values, model["features"][name]["mean"])
-        raised[name] = np.where(held[name], values, usual) if name in held else usual
+    for name, known in model["features"].items():
+        usual = np.fmax(features[name], known["mean"])
+        raised[name] = np.where(held[name], features[name], usual) if name in held else usual
     return raised
 
 
-def _explain(shares: FloatArray, features: Mapping[str, Any], verify: BoolArray) -> Array:
-    """Return in words (n,) what most speaks against each element to verify; else nothing."""
-    names = np.array(list(features), object)
-    words = np.full(len(verify), "", object)
+def _explain(shares: FloatArray, names: Sequence[str], verify: BoolArray) -> tuple[Array, Array]:
+    """Return what of each element to verify is doubtful (n,), and in words (n,) why; else nothing.
+
+    What most speaks against an element says which.
+    """
+    about, words = (np.full(len(verify), "", object) for _ in range(2))
     for row in np.flatnonzero(verify):
         # two reasons: more are not read
-        worst = [i for i in np.argsort(shares[row])[:2] if shares[row, i] < 0]
-        words[row] = ", ".join(REASONS[name] for name in names[worst]) or "little is known of it"
-    return words
+        order = np.argsort(shares[row])[:2]
+        worst: list[str] = np.array(names, object)[order[shares[row, order] < 0]].tolist()
+        words[row] = ", ".join(REASONS[name] for name in worst) or "little is known of it"
+        about[row] = KIND if worst and worst[0] in OF_KIND else EXISTENCE
+    return about, words

@@ -1,62 +1,94 @@
-"""The model of `confidence.py`, written by `make bench ARGS="confidence ..."`.
+"""The model of `confidence.py`, written by `make bench ARGS="confidence FOLDER"`.
 
-Fitted on dwelling_101_vlp16_rover, dwelling_102_vlp16_unconverged,
-office_cellular_101_ouster64_trolley, office_cellular_102_vlp16_rover,
-hospital_101_vlp16_unconverged, hospital_102_uneven32_tilted, old_house_101_vlp16_hand,
-old_house_103_uneven32_tilted, museum_102_vlp16_hand, hall_101_vlp16_odometry, hall_103_vlp16_hand,
-office_glass_103_vlp16_rover; tested on attic_201_vlp16_hand, basement_202_uneven32_tilted,
-hotel_203_vlp16_rover, school_202_vlp16_rover, library_202_vlp16_hand, shop_201_vlp16_odometry,
-office_open_203_vlp16_odometry.
+Fitted on drives through buildings of these kinds: dwelling, hall, hospital, museum,
+office_cellular, office_glass, old_house.
 """
 
 from typing import Any
 
 COEFFICIENTS: dict[str, Any] = {
-    "level": 0.627,
-    "walls": {
-        "intercept": 1.8199,
-        "features": {
-            "agreement": {"mean": 4.0185, "weight": 0.4479},
-            "observed": {"mean": 0.9153, "weight": 0.8072},
-            "undoubled": {"mean": 0.8988, "weight": 0.4635},
-            "joined": {"mean": 1.457, "weight": 0.235},
-            "bounding": {"mean": 0.8199, "weight": 0.8371},
-            "worst_span": {"mean": -0.1016, "weight": 0.2057},
-            "points": {"mean": 7.1249, "weight": 0.2288},
-            "length": {"mean": 0.7469, "weight": 0.0},
+    "space": {
+        "walls": {
+            "intercept": 1.83,
+            "features": {
+                "thing": {"mean": 2.48, "weight": 0.6},
+                "line": {"mean": 6.22, "weight": 0.13},
+                "agreement": {"mean": 4.36, "weight": 0.2},
+            },
+        },
+        "faces": {
+            "intercept": 2.52,
+            "features": {
+                "thing": {"mean": 3.72, "weight": 0.48},
+                "line": {"mean": 6.35, "weight": 0.1},
+                "worst_span": {"mean": 3.7, "weight": 0.34},
+                "bounding": {"mean": 0.89, "weight": 1.22},
+            },
+        },
+        "openings": {
+            "intercept": 0.13,
+            "features": {
+                "kind": {"mean": 4.48, "weight": 0.33},
+                "wall": {"mean": 4.01, "weight": 0.51},
+                "rays": {"mean": 5.66, "weight": 0.24},
+                "wide": {"mean": -0.11, "weight": 7.38},
+                "leads": {"mean": 0.68, "weight": 1.78},
+            },
+        },
+        "rooms": {
+            "intercept": 2.12,
+            "features": {
+                "walled": {"mean": 0.9, "weight": 6.59},
+                "faced": {"mean": 0.77, "weight": 1.42},
+            },
+        },
+        "level": 0.672,
+        "most": 0.961,
+        "off": {
+            "tuning": {"walls": 0.04, "faces": 0.02, "openings": 0.03, "rooms": 0.07},
+            "reporting": {"walls": 0.08, "faces": 0.05, "openings": 0.08, "rooms": 0.18},
         },
     },
-    "faces": {
-        "intercept": 2.1568,
-        "features": {
-            "agreement": {"mean": 3.893, "weight": 0.2736},
-            "worst_span": {"mean": 3.3609, "weight": 0.2221},
-            "points": {"mean": 5.4427, "weight": 0.0423},
-            "observed": {"mean": 0.7663, "weight": 0.0},
-            "length": {"mean": -0.2531, "weight": 0.0},
-            "smooth": {"mean": -1.2988, "weight": 0.1338},
-            "undoubled": {"mean": 0.9394, "weight": 0.0483},
-            "joined": {"mean": 1.6391, "weight": 0.2205},
-            "bounding": {"mean": 0.886, "weight": 1.2978},
+    "plane": {
+        "walls": {
+            "intercept": 0.67,
+            "features": {
+                "thing": {"mean": 2.1, "weight": 0.96},
+                "line": {"mean": 7.16, "weight": 0.27},
+                "agreement": {"mean": 4.82, "weight": 0.08},
+            },
         },
-    },
-    "openings": {
-        "intercept": 0.3062,
-        "features": {
-            "kind": {"mean": 2.7186, "weight": 0.5001},
-            "usual": {"mean": 0.8431, "weight": 1.7104},
-            "wall": {"mean": 3.7682, "weight": 0.321},
-            "joined": {"mean": 1.8066, "weight": 0.752},
-            "alone": {"mean": 0.8275, "weight": 0.5545},
-            "width": {"mean": 0.0259, "weight": 0.0},
+        "faces": {
+            "intercept": 1.92,
+            "features": {
+                "thing": {"mean": 3.03, "weight": 1.05},
+                "line": {"mean": 6.61, "weight": 0.31},
+            },
         },
-    },
-    "rooms": {
-        "intercept": 3.1495,
-        "features": {
-            "walled": {"mean": 0.8591, "weight": 0.0},
-            "faced": {"mean": 0.7216, "weight": 7.3243},
-            "broad": {"mean": 1.1472, "weight": 0.1292},
+        "openings": {
+            "intercept": 0.38,
+            "features": {
+                "kind": {"mean": 1.98, "weight": 0.1},
+                "host": {"mean": 3.1, "weight": 0.47},
+                "wall": {"mean": 4.34, "weight": 0.12},
+                "rays": {"mean": 3.51, "weight": 0.17},
+                "wide": {"mean": -0.02, "weight": 6.8},
+                "leads": {"mean": 0.62, "weight": 1.08},
+            },
+        },
+        "rooms": {
+            "intercept": 0.34,
+            "features": {
+                "faced": {"mean": 0.72, "weight": 5.79},
+                "broad": {"mean": 1.06, "weight": 1.42},
+            },
+        },
+        "level": 0.458,
+        "most": 0.976,
+        "off": {
+            "tuning": {"walls": 0.08, "faces": 0.04, "openings": 0.09, "rooms": 0.12},
+            "reporting": {"walls": 0.12, "faces": 0.13, "openings": 0.12, "rooms": 0.11},
+            "real": {"openings": 0.12, "rooms": 0.06},
         },
     },
 }

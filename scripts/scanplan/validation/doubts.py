@@ -1,88 +1,168 @@
 """What of a plan should be verified on site, and why: for the report, the summaries, the sheet."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.floorplan_files import UNRATED
-from scanplan.types import BoolArray, Columns, IntArray
-from scanplan.validation.confidence import NOT_CLOSED
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray
+from scanplan.validation import doubt_words
+from scanplan.validation.confidence import END, EXISTENCE, KIND, NOT_CLOSED, PLACE, WIDTH
+from scanplan.validation.doubt_words import NEARLY
 
+MOST = 20
+"""Lines that a person reads of a list before anything else."""
+MARKS = {EXISTENCE: "?", KIND: "kind?", PLACE: "place?", END: "end?", WIDTH: "width?"}
+"""What stands beside an element on a sheet, by what of it is doubtful."""
+_PARTS = (END, WIDTH)
 _WEAK = "few scans show it, or its place is uncertain"
+_COSTS = {"room": 4.0, "door": 3.0, "passage": 3.0, "wall": 2.0, "window": 1.0, "glass": 1.0}
+# what a wrong one costs its reader, beside others: a room more or less changes the whole plan, a
+# way who comes through, a wall one room, a window light
+_LEAST_COST = 0.5  # of a gap, which is drawn as not known, and of one side of a wall that stands
+_PART_COST = 0.25  # of an end or a width: decimetres, where all else is right
+_BESIDE_M = 1.0  # from a room to what belongs to it: beyond the thickest wall
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Doubt:
-    """An element of a plan that should be verified on site.
+    """An element of a plan that should be verified on site, or a part of one.
 
     Attributes
     ----------
     kind : str
-        `opening`, `wall`, `face` or `room`.
+        `opening`, `wall`, `face` or `room`; `nearly` of what is not drawn.
     number : int
     name : str
         What it is called.
     reason : str
+    about : str
+        What of it is doubtful, as `schemas.CONFIDENCE` has it; empty where no stage said so.
+    question : str
+        What to look for, to a person who stands there.
+    room : str
+        The name of the room that it is at; empty of none.
+    place_m : (2,) float64
+        Where to look, map frame.
+    cost : float
+        What an error would cost, times how likely it is.
     """
 
     kind: str
     number: int
     name: str
     reason: str
+    about: str
+    question: str
+    room: str
+    place_m: FloatArray
+    cost: float
 
     @property
     def element(self) -> str:
         """Its kind and number, such as `wall 3`."""
         return f"{self.kind} {self.number}"
 
+    @property
+    def is_part(self) -> bool:
+        """Whether the element stands as it is drawn, but for an end or its width."""
+        return self.about in _PARTS
+
 
 def list_doubts(plan: FloorPlan) -> list[Doubt]:
-    """List what to verify, openings, walls, rooms, at last faces; the least certain first.
+    """List what is doubtful, that first of which an error is expected to cost most.
 
-    A face of a wall that is listed is not.
+    A face of a wall that is to be verified is not listed.
 
     Parameters
     ----------
     plan : floorplan.FloorPlan
-        Its tables' columns `verify`, `doubt` and `p_true` are taken where they stand.
+        The columns of `schemas.CONFIDENCE` are taken where its tables have them.
     """
     kinds = plan.openings["type"].tolist()
     numbered = zip(kinds, plan.openings["opening"].tolist(), strict=True)
-    openings = [f"{kind} {n}".capitalize() for kind, n in numbered]
-    walls = [f"Wall {n}" for n in plan.walls["wall"].tolist()]
-    return [
-        *_doubts_of("opening", plan.openings, openings),
-        *_doubts_of("wall", plan.walls, walls),
-        *_doubts_of("room", plan.rooms, plan.room_names),
-        *_doubts_of_faces(plan),
-    ]
+    rows = find_doubtful_faces(plan)
+    faces = {name: values[rows] for name, values in plan.faces.items()}
+    sides = zip(faces["face"].tolist(), faces["wall"].tolist(), strict=True)
+    found = [
+        *_doubts_of(plan, "opening", plan.openings, [f"{k} {n}".capitalize() for k, n in numbered]),
+        *_doubts_of(plan, "wall", plan.walls, [f"Wall {n}" for n in plan.walls["wall"].tolist()]),
+        *_doubts_of(plan, "room", plan.rooms, plan.room_names),
+        *_doubts_of(plan, "face", faces, [f"Face {n} of wall {w}" if w >= 0 else f"Face {n}"
+                                          for n, w in sides]),
+    ]  # fmt: skip
+    return sorted(found, key=lambda doubt: -doubt.cost)
+
+
+def list_to_verify(plan: FloorPlan) -> list[Doubt]:
+    """List what is to be verified as a whole, in the same order."""
+    return [doubt for doubt in list_doubts(plan) if not doubt.is_part]
+
+
+def group_by_room(doubts: Sequence[Doubt]) -> list[tuple[str, list[Doubt]]]:
+    """Return doubts by the room that they are at, that room first that the first of them is in."""
+    rooms: dict[str, list[Doubt]] = {}
+    for doubt in doubts:
+        rooms.setdefault(doubt.room, []).append(doubt)
+    return list(rooms.items())
+
+
+def list_nearly(plan: FloorPlan) -> list[Doubt]:
+    """List what was nearly drawn, the likeliest first."""
+    found: list[Doubt] = []
+    for number, near in enumerate(sorted(plan.nearly, key=lambda near: -near.p)):
+        place_m = near.ends_m.mean(axis=0)
+        at = _find_nearest_room(plan, place_m)
+        where = doubt_words.say_where(plan, at, place_m)
+        size_m = float(np.hypot(*(near.ends_m[1] - near.ends_m[0])))
+        found.append(
+            Doubt(
+                kind="nearly",
+                number=number,
+                name=f"Perhaps a {near.kind}",
+                reason=f"p {near.p:.2f}",
+                about=EXISTENCE,
+                question=doubt_words.ask(near.kind, NEARLY, size_m, where),
+                room=plan.room_names[at] if at >= 0 else "",
+                place_m=place_m,
+                cost=_COSTS[near.kind] * near.p,
+            )
+        )
+    return found
 
 
 def list_unrated(plan: FloorPlan) -> list[str]:
-    """Return in a sentence why no element has a probability, where none has; else nothing."""
-    known = plan.walls.get("p_true", np.zeros(1))
-    if len(known) == 0 or np.isfinite(known).any():
+    """Return in a sentence that the stage failed that rates elements; nothing if it did not."""
+    told = plan.walls.get("doubt", np.empty(0, object))
+    if len(told) == 0 or (told != UNRATED).any():
         return []
-    if (plan.walls["doubt"] == UNRATED).all():
-        return ["no confidence scores: the stage that rates elements failed; verify all on site"]
-    return ["no confidence scores: no heights above the floor were seen, as by a 2-D scanner"]
+    return [
+        "how likely elements are right is not known, as the stage that rates them failed: all are"
+        " to be verified"
+    ]
+
+
+def mark_doubt(about: str, *, verify: bool) -> str:
+    """Return what stands beside an element on a sheet; nothing beside one that is in no doubt."""
+    return MARKS.get(about, "?" * verify)
 
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:
     """Return why a row of a table of elements is doubtful; nothing if it is not."""
     if "verify" in columns:
         told = str(columns["doubt"][row]) if "doubt" in columns else ""
-        return (told or _WEAK) if columns["verify"][row] else ""
+        return told or (_WEAK if columns["verify"][row] else "")
     return NOT_CLOSED if kind == "room" and not columns["closed"][row] else ""
 
 
-def _doubts_of_faces(plan: FloorPlan) -> list[Doubt]:
-    rows = find_doubtful_faces(plan)
-    faces = {name: values[rows] for name, values in plan.faces.items()}
-    sides = zip(faces["face"].tolist(), faces["wall"].tolist(), strict=True)
-    names = [f"Face {n} of wall {wall}" if wall >= 0 else f"Face {n}" for n, wall in sides]
-    return _doubts_of("face", faces, names)
+def list_loose_ends(plan: FloorPlan) -> list[tuple[int, FloatArray]]:
+    """Return the rows of walls that are sure but for an end, and where (2,) that is."""
+    about = plan.walls.get("about", np.full(len(plan.walls["wall"]), ""))
+    rows = np.flatnonzero(about == END).tolist()
+    return [(row, _find_place_m("wall", plan.walls, row, END)) for row in rows]
 
 
 def find_doubtful_rooms(plan: FloorPlan) -> BoolArray:
@@ -103,12 +183,68 @@ def find_doubtful_faces(plan: FloorPlan) -> IntArray:
     return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], judged))
 
 
-def _doubts_of(kind: str, columns: Columns, names: list[str]) -> list[Doubt]:
+def _doubts_of(
+    plan: FloorPlan, kind: str, columns: Columns, names: Sequence[str]
+) -> Iterator[Doubt]:
     numbers = columns[kind].tolist()
-    certain = columns.get("p_true", np.zeros(len(numbers)))
-    found: list[Doubt] = []
-    for row in np.argsort(certain, kind="stable").tolist():
+    p_true = np.nan_to_num(columns.get("p_true", np.zeros(len(numbers))), nan=0.0)
+    for row, number in enumerate(numbers):
         reason = explain_doubt(kind, columns, row)
-        if reason:
-            found.append(Doubt(kind, numbers[row], names[row], reason))
-    return found
+        if not reason:
+            continue
+        about = str(columns["about"][row]) if "about" in columns else ""
+        noun = str(columns["type"][row]) if kind == "opening" else kind
+        place_m = _find_place_m(kind, columns, row, about)
+        at = _find_room(plan, kind, columns, row, place_m)
+        cost = _COSTS.get(noun, _LEAST_COST) * (1 - float(p_true[row]))
+        yield Doubt(
+            kind=kind,
+            number=number,
+            name=names[row],
+            reason=reason,
+            about=about,
+            question=doubt_words.ask(
+                noun,
+                about,
+                _measure_m(kind, columns, row),
+                doubt_words.say_where(plan, at, None if kind == "room" else place_m),
+            ),
+            room=plan.room_names[at] if at >= 0 else "",
+            place_m=place_m,
+            cost=_PART_COST if about in _PARTS else cost,
+        )
+
+
+def _find_place_m(kind: str, columns: Columns, row: int, about: str) -> FloatArray:
+    """Return where (2,) an element is, or the end of it that is doubtful."""
+    if kind == "room":
+        return np.array([columns["x_m"][row], columns["y_m"][row]])
+    ends_m = centrelines_m({name: values[row : row + 1] for name, values in columns.items()})[0]
+    if about != END:
+        return ends_m.mean(axis=0)
+    return ends_m[int(columns["sigma_end1_m"][row] > columns["sigma_end0_m"][row])]
+
+
+def _find_room(plan: FloorPlan, kind: str, columns: Columns, row: int, place_m: FloatArray) -> int:
+    """Return the row of the room that an element is at; -1 of none."""
+    rows = {number: at for at, number in enumerate(plan.rooms["room"].tolist())}
+    if kind == "room":
+        return row
+    if kind == "opening":
+        beside = [int(columns[name][row]) for name in ("room_a", "room_b")]
+        known = [rows[number] for number in beside if number in rows]
+        return known[0] if known else -1
+    return _find_nearest_room(plan, place_m)
+
+
+def _find_nearest_room(plan: FloorPlan, place_m: FloatArray) -> int:
+    far_m = shapely.distance(plan.areas, shapely.Point(place_m))
+    return int(far_m.argmin()) if far_m.min(initial=np.inf) <= _BESIDE_M else -1
+
+
+def _measure_m(kind: str, columns: Columns, row: int) -> float:
+    """Return how long an element is, or how wide; NaN of a room."""
+    if kind == "room":
+        return np.nan
+    ends_m = centrelines_m({name: values[row : row + 1] for name, values in columns.items()})[0]
+    return float(np.hypot(*(ends_m[1] - ends_m[0])))

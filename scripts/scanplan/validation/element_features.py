@@ -1,39 +1,45 @@
-"""Features of a plan's elements: their evidence, and their fit to their surroundings."""
+"""What is known of the elements of a plan without any truth: the model's own posterior, and rays.
+
+`plan/model/` says how likely a surface is a wall and no leaf, furniture or what is outside, how
+likely its line is solid, and how likely an opening is of its kind. Rays of scans that the plan was
+not made of say the rest. What is not known of an element (NaN) speaks neither for it nor against.
+"""
 
 import numpy as np
-import shapely
 
-from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
-from scanplan.types import Columns, FloatArray, IntArray
+from scanplan.types import Array, Columns, FloatArray, IntArray
 from scanplan.validation import surroundings
 from scanplan.validation.drawn_surfaces import FACE
 
 REASONS = {
+    "thing": "may be a leaf, furniture or what is outside",
+    "line": "may be open in part",
     "agreement": "rays of other scans contradict it",
     "worst_span": "rays of other scans contradict a part of it",
-    "points": "few points, or none",
-    "observed": "partly or wholly inferred",
-    "length": "short",
-    "smooth": "points scatter",
-    "undoubled": "another surface just behind or before it",
-    "joined": "its ends meet nothing",
     "bounding": "bounds no room",
-    "kind": "kind uncertain",
-    "usual": "no floor was seen beyond it, or a window inside",
-    "wall": "in no wall, or rays of other scans contradict that",
-    "alone": "another opening beside it",
-    "width": "wide for what it is",
+    "kind": "may be of another kind",
+    "host": "its wall may be none",
+    "wall": "rays of other scans contradict its wall",
+    "rays": "few rays went through",
+    "wide": "narrow for what it is",
+    "leads": "leads to no known room, or is a window inside",
     "walled": "outline partly not seen",
     "faced": "outline partly without walls",
     "broad": "small or narrow",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
-FIXED = ("length", "width", "broad")
+OF_KIND = ("thing", "line", "kind")
+"""Features that say what an element is, where others say whether it is there."""
+FIXED = ("wide", "broad")
 """Features that are the same however often an element is seen."""
-OF_WALL = ("wall",)
+OF_WALL = ("host", "wall")
 """Features that an opening in no wall never has."""
+_SUREST = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
+_USUAL_M = {"window": 1.0, "glass": 1.0}
+_LEAF_M = 0.75
+# narrower ones are between things: the least usual leaf (DIN 18101), and windows of the tuning half
 
 
 def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[str, FloatArray]]:
@@ -45,87 +51,62 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
         The columns of `schemas.VALIDATION`.
     """
     faces = _describe_faces(plan, validation)
-    walls = _describe_walls(plan, faces)
+    walls = _describe_walls(plan, faces["agreement"])
     return {
         "walls": walls,
-        "faces": faces,
-        "openings": _describe_openings(plan, walls["agreement"]),
+        "faces": {name: faces[name] for name in ("thing", "line", "worst_span", "bounding")},
+        "openings": _describe_openings(plan, walls),
         "rooms": _describe_rooms(plan, validation),
     }
 
 
 def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
-    faces, lines_m = plan.faces, centrelines_m(plan.faces)
-    length_m = np.maximum(line_lengths_m(lines_m), 0.1)
-    normals = np.column_stack([faces["nx"], faces["ny"]])
-    undoubled = 1 - surroundings.share_doubled(lines_m, normals)
-    # rays that end at two surfaces one behind the other speak for one of them
-    agreement, worst = (
-        np.where(odds > 0, odds * undoubled, odds)
-        for odds in _agreements(validation, faces["face"])
-    )
-    return {
-        "agreement": agreement,
-        "worst_span": worst,
-        "points": np.log1p(faces["n_points"] / length_m),
-        "observed": (faces["state"] == "observed").astype(float),
-        "length": np.log(length_m),
-        "smooth": -np.nan_to_num(faces["rmse_m"], nan=0.0) * 100,
-        "undoubled": undoubled,
-        "joined": surroundings.count_joined_ends(lines_m, lines_m, same=True).astype(float),
-        "bounding": surroundings.share_along(lines_m, plan.areas),
-    }
-
-
-def _describe_walls(plan: FloorPlan, faces: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return the features of walls (n,): means of their faces' by length, and their least."""
+    agreement, worst = _agreements(validation, plan.faces["face"])
     row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
     host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
-    n, has_host = len(row_of), host >= 0
-    length_m = line_lengths_m(centrelines_m(plan.faces))
-    whole_m = np.bincount(host[has_host], length_m[has_host], n)
-
-    def mean(name: str) -> FloatArray:
-        sums = np.bincount(host[has_host], (faces[name] * length_m)[has_host], n)
-        return np.divide(sums, whole_m, out=np.zeros(n), where=whole_m > 0)
-
-    least = np.zeros(n)
-    np.minimum.at(least, host[has_host], faces["worst_span"][has_host])
-    wall_m = np.maximum(line_lengths_m(centrelines_m(plan.walls)), 0.1)
-    means = ("agreement", "observed", "undoubled", "joined", "bounding")
-    return {name: mean(name) for name in means} | {
-        "worst_span": least,
-        "points": np.log1p(plan.walls["n_points"] / wall_m),
-        "length": np.log(wall_m),
+    return {
+        **{name: np.append(odds, np.nan)[host] for name, odds in _odds_of_walls(plan).items()},
+        "agreement": agreement,
+        "worst_span": worst,
+        "bounding": surroundings.share_along(centrelines_m(plan.faces), plan.areas),
     }
 
 
-def _describe_openings(plan: FloorPlan, of_walls: FloatArray) -> dict[str, FloatArray]:
-    openings, lines_m = plan.openings, centrelines_m(plan.openings)
-    # rays of one gap depend on each other: what they say beyond 19 to 1 is not surer. A passage in
-    # no wall is narrow floor, of whatever kind
-    stated = np.nan_to_num(openings["p_kind"], nan=0.95).astype(float)
-    p_kind = np.clip(stated, 0.05, 0.95)
-    is_way = np.isin(openings["type"].astype(str), WAYS)
+def _odds_of_walls(plan: FloorPlan) -> dict[str, FloatArray]:
+    return {"thing": _log_odds(plan.walls["p_wall"]), "line": _log_odds(plan.walls["p_solid"])}
+
+
+def _describe_walls(plan: FloorPlan, of_faces: FloatArray) -> dict[str, FloatArray]:
+    """Return the features of walls (n,): agreement is that of their faces (m,), by length."""
+    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
+    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    has_host = host >= 0
+    length_m = np.maximum(line_lengths_m(centrelines_m(plan.faces)), 0.1)[has_host]
+    whole_m, sums = (
+        np.bincount(host[has_host], values, len(row_of))
+        for values in (length_m, length_m * of_faces[has_host])
+    )
+    agreement = np.divide(sums, whole_m, out=np.zeros(len(row_of)), where=whole_m > 0)
+    return {**_odds_of_walls(plan), "agreement": agreement}
+
+
+def _describe_openings(plan: FloorPlan, walls: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    openings, is_hosted = plan.openings, plan.hosts >= 0
+    kinds = openings["type"].astype(str)
+    is_way = np.isin(kinds, WAYS)
     is_inner = np.minimum(openings["room_a"], openings["room_b"]) >= 0
     is_between = is_inner & (openings["room_a"] != openings["room_b"])
-    # having been driven through makes a kind as sure, or an open leaf before floor that was seen
-    is_known = is_between | (stated > 0.95)
-    left_m, right_m = (np.append(side_m, 0.0)[plan.hosts] for side_m in plan.sides_m)
-    floor = overlays.unite_areas(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
-    beyond = surroundings.share_floor_beyond(
-        lines_m, np.column_stack([left_m, -right_m]), plan.areas, floor
-    )
-    is_hosted = plan.hosts >= 0
-    observed_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]
+    usual_m = np.array([_USUAL_M.get(kind, _LEAF_M) for kind in kinds])
+    wide = np.log(np.clip(openings["width_m"], 0.05, usual_m) / usual_m)
+    # a passage in no wall is narrow floor: neither wall nor rays are asked of it
+    no_wall = np.where(kinds == "passage", np.nan, 0.0)
     return {
-        # whether a way out is one or a pane is asked below, by what speaks for either
-        "kind": np.where(is_way & ~is_inner, np.log(19), np.log(p_kind / (1 - p_kind))),
-        "usual": np.where(is_way, np.where(is_known, 1.0, beyond), ~is_inner),
-        "wall": np.where(is_hosted, np.append(of_walls, 0.0)[plan.hosts], 0.0),
-        "joined": surroundings.count_joined_ends(lines_m, observed_m, same=False).astype(float),
-        "alone": surroundings.stand_alone(lines_m),
-        "width": -np.log(np.maximum(openings["width_m"], 0.1)),
+        "kind": _log_odds(openings["p_kind"]),
+        "host": np.where(is_hosted, np.append(walls["thing"], 0.0)[plan.hosts], no_wall),
+        "wall": np.where(is_hosted, np.append(walls["agreement"], 0.0)[plan.hosts], no_wall),
+        "rays": np.where(is_hosted, np.log1p(openings["n_rays"]), no_wall),
+        "wide": wide,
+        "leads": np.where(is_way, is_between, ~is_inner).astype(float),
     }
 
 
@@ -148,6 +129,12 @@ def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
 def _sum_by_room(rooms: IntArray, numbers: IntArray, lengths_m: FloatArray) -> FloatArray:
     """Return the sum (r,) of the lengths that have each room's number."""
     return np.array([lengths_m[numbers == room].sum() for room in rooms.tolist()], np.float64)
+
+
+def _log_odds(p: Array) -> FloatArray:
+    """Return the logarithms of odds (n,) of probabilities, no surer than densities are known."""
+    known = np.clip(np.asarray(p, np.float64), _SUREST, 1 - _SUREST)
+    return np.log(known / (1 - known))
 
 
 def _agreements(validation: Columns, numbers: IntArray) -> tuple[FloatArray, FloatArray]:

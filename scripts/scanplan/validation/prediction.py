@@ -46,11 +46,14 @@ class ValidationSettings:
         Scans taken in one square of this edge count as one, see `clustered_shares`.
     registration_sigma_m : float, > 0
         Standard deviation of a scan's place.
+    max_sigma_m : float, > 0
+        Ends of walls that have a greater one are doubtful.
     seed : int
     """
 
     max_scans: int
     registration_sigma_m: float
+    max_sigma_m: float
     seed: int
     max_rays: int = 80_000  # of a share they would leave 0.2 %, if each were independent
     span_m: float = 1.0  # about a door's width

@@ -71,7 +71,9 @@ def _score(
     return row, of_plan.elements
 
 
-def place_floor(folder: Path, recorded: Recorded) -> score_files.Placed:
+def place_floor(
+    folder: Path, recorded: Recorded, *, with_points: bool = True
+) -> score_files.Placed:
     """Place the results of a floor beside its truth, as its kind of truth asks for.
 
     Parameters
@@ -79,10 +81,12 @@ def place_floor(folder: Path, recorded: Recorded) -> score_files.Placed:
     folder : Path
         results/<floor>.
     recorded : Recorded
+    with_points : bool
+        Whether what is missed is judged by points, too: seconds.
     """
     if recorded.true_poses is not None:
         return score_files.place_results(
-            folder, recorded.truth, recorded.true_poses, with_points=True
+            folder, recorded.truth, recorded.true_poses, with_points=with_points
         )
     if recorded.truth.suffix == ".npz":
         return score_files.place_results_by_raster(folder, recorded.truth)

@@ -62,7 +62,7 @@ def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
     middle_m = line_m.mean(axis=0)
     joined = [rows["room_a"][row], rows["room_b"][row]]
     through_m = _find_places(plan, middle_m, step_m, joined)
-    stated = ("p_true", "verify", "doubt", "corrected")
+    stated = ("p_true", "verify", "about", "doubt", "corrected")
     doubt = {name: rows[name][row] for name in stated if name in rows}
     return {
         "opening": rows["opening"][row],

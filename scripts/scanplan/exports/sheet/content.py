@@ -38,7 +38,8 @@ _FACTS = {
     "room": ("area_m2", "perimeter_m", "closed", "n_scans"),
     "furniture": ("area_m2", "z_min_m", "z_max_m", "n_points", "n_scans"),
 }
-_OF_ALL = ("p_true", "doubt", "corrected")
+_END_M = 0.15  # around an end: it is seen beside a wall of usual thickness
+_OF_ALL = ("p_true", "about", "doubt", "corrected")
 
 
 def facts_of(table: str, columns: Columns, row: int) -> Facts:
@@ -103,13 +104,19 @@ def draw_axes(plan: FloorPlan) -> Iterator[Mark]:
 def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
     """Yield what of the walls is to be verified, with what is known of it.
 
-    Outlines of whole walls, and lines of faces whose walls are not.
+    Outlines of whole walls, circles around ends of those that are sure but for these, and lines of
+    faces whose walls are not.
     """
     for row in np.flatnonzero(is_doubtful(plan.walls)).tolist():
         number = plan.walls["wall"][row]
         facts = facts_of("wall", plan.walls, row)
         title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
         yield _area("verify", plan.bodies[row], f"verify-wall-{number}", title, facts, verify=True)
+    for row, end_m in doubts.list_loose_ends(plan):
+        number, facts = plan.walls["wall"][row], facts_of("wall", plan.walls, row)
+        around = overlays.buffer_shapes(shapely.Point(end_m), _END_M)
+        title = f"verify the end of wall {number} {facts['doubt']}"
+        yield _area("verify", around, f"verify-end-{number}", title, facts, verify=True)
     for row in doubts.find_doubtful_faces(plan).tolist():
         number, facts = plan.faces["face"][row], facts_of("face", plan.faces, row)
         title = " ".join(["verify face", str(number), str(facts.get("doubt", ""))]).strip()

@@ -20,7 +20,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
-from scanplan.validation.doubts import list_doubts
+from scanplan.validation.doubts import list_to_verify
 from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
@@ -90,7 +90,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     y1 = y0 + TITLE_ROWS * Paper.ROW
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
-    n_doubts = len(list_doubts(plan))
+    n_doubts = len(list_to_verify(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""

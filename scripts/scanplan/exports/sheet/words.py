@@ -16,7 +16,8 @@ from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
-from scanplan.validation.doubts import find_doubtful_rooms
+from scanplan.validation.confidence import END
+from scanplan.validation.doubts import MARKS, find_doubtful_rooms, list_loose_ends, mark_doubt
 
 
 def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
@@ -94,9 +95,10 @@ def label_openings(
     """Yield the widths of openings that no chain of dimensions states, and marks of doubt."""
     for symbol, is_stated in zip(symbols, is_in_chain, strict=True):
         text = "" if is_stated else f"{symbol.width_m:.2f}"
-        text += "?" * symbol.verify
+        mark = mark_doubt(str(symbol.facts.get("about", "")), verify=symbol.verify)
+        text = _join_words(text, mark)
         if text:
-            kind = "verify" if symbol.verify else "width"
+            kind = "verify" if mark else "width"
             ends = page.to_paper(symbol.ends_m)
             thick_mm = symbol.thickness_m * page.mm_per_m
             yield from _place_beside(page, kind, text, ends, thick_mm, symbol.element, space)
@@ -104,17 +106,27 @@ def label_openings(
 
 def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word]:
     """Yield the heights of walls that end below the ceiling, and marks of doubt."""
-    doubtful = is_doubtful(plan.walls)
+    doubtful, loose_m = is_doubtful(plan.walls), dict(list_loose_ends(plan))
     left_m, right_m = plan.sides_m
     for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
         text = f"{plan.heights_m[row]:.2f} high" if plan.low[row] else ""
-        text += "?" * bool(doubtful[row])
-        if text:
-            kind = "verify" if doubtful[row] else "note"
-            thick_mm = float(left_m[row] + right_m[row]) * page.mm_per_m
-            element = f"wall-{plan.walls['wall'][row]}"
-            ends = page.to_paper(ends_m)
-            yield from _place_beside(page, kind, text, ends, thick_mm, element, space)
+        about = str(plan.walls["about"][row]) if doubtful[row] and "about" in plan.walls else ""
+        words = [(_join_words(text, mark_doubt(about, verify=bool(doubtful[row]))), ends_m)]
+        if row in loose_m:
+            # beside the end alone, not the middle of the wall
+            words.append((MARKS[END], np.stack([loose_m[row], ends_m.mean(axis=0)])))
+        thick_mm = float(left_m[row] + right_m[row]) * page.mm_per_m
+        for said, along_m in words:
+            if said:
+                kind = "verify" if said.endswith("?") else "note"
+                element = f"wall-{plan.walls['wall'][row]}"
+                ends = page.to_paper(along_m)
+                yield from _place_beside(page, kind, said, ends, thick_mm, element, space)
+
+
+def _join_words(text: str, mark: str) -> str:
+    """Return a text with a mark of doubt, of which words stand apart from it."""
+    return f"{text} {mark}" if text and mark not in ("", "?") else text + mark
 
 
 def _place_beside(

@@ -119,7 +119,7 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
         row["type"] = correction.kind
     # what a person has looked at needs no other to verify it
     row |= {"verify": False} if "verify" in row else {}
-    row |= {"doubt": ""} if "doubt" in row else {}
+    row |= {name: "" for name in ("about", "doubt") if name in row}
 
 
 def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:

@@ -7,7 +7,7 @@ kinds are found by dynamic programming, the probabilities by the forward-backwar
 columns changes. For b such places it takes b squared steps for each label.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,10 @@ from scanplan.plan.model.surface_counts import COLUMN_M, SurfaceCounts
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 NOWHERE_M = np.empty((0, 2))
+NEARLY = 0.3
+"""Least probability of what was nearly drawn: of such things a fourth is there (tuning half)."""
+_MAY_BE = (priors.DOOR, priors.WINDOW, priors.GLASS, priors.SHUT)
+_LEAST_M = 0.4  # of what may be an opening, as narrow as any of `priors` is
 _N_KINDS = len(priors.KINDS)
 _Reduction = Callable[..., FloatArray]
 
@@ -35,6 +39,8 @@ class Stretch:
         Between which heights above the floor it is what it is; NaN: from the floor, to any height.
     p : float
         Probability of its kind, in the mean of its length.
+    nearly : sequence of Stretch
+        The openings that it nearly has, if it is solid.
     """
 
     kind: str
@@ -43,6 +49,7 @@ class Stretch:
     sill_m: float
     lintel_m: float
     p: float
+    nearly: Sequence["Stretch"] = ()
 
     @property
     def length_m(self) -> float:
@@ -74,6 +81,7 @@ def label_line(
     crossed = (crossed_m - counts.first_m) / COLUMN_M
     chain = _Chain(labels, likely, line=line, goes_on=goes_on, crossed=crossed)
     shares = chain.kind_shares()
+    places_m = counts.first_m + chain.cuts * COLUMN_M
     stretches = []
     for begin, end, label in chain.best_path():
         first, last = int(chain.cuts[begin]), int(chain.cuts[end])
@@ -87,6 +95,9 @@ def label_line(
                 sill_m=float(labels.sill_m[label]),
                 lintel_m=float(labels.lintel_m[label]),
                 p=float(np.average(shares[begin:end, kind], weights=width)),
+                nearly=list(find_nearly(shares[begin:end], places_m[begin : end + 1]))
+                if kind == priors.SOLID
+                else (),
             )
         )
     return stretches
@@ -97,6 +108,25 @@ def weigh_line(counts: SurfaceCounts, *, line: int) -> float:
     labels = priors.list_labels(counts.ends.shape[1], line=line)
     chain = _Chain(labels, weigh_columns(counts, labels), line=line, goes_on=(False, False))
     return chain.evidence
+
+
+def find_nearly(shares: FloatArray, places_m: FloatArray) -> Iterator[Stretch]:
+    """Yield what may be an opening where a line is likelier solid.
+
+    Parameters
+    ----------
+    shares : (n, k) float64
+        Probability of each kind between neighbouring places.
+    places_m : (n + 1,) float64
+        Along the line.
+    """
+    for kind in _MAY_BE:
+        is_likely = np.concatenate([[False], shares[:, kind] >= NEARLY, [False]])
+        for first, last in np.flatnonzero(np.diff(is_likely)).reshape(-1, 2).tolist():
+            low_m, high_m = places_m[[first, last]].tolist()
+            if high_m - low_m >= _LEAST_M:
+                p = float(shares[first:last, kind].max())
+                yield Stretch(priors.KINDS[kind], low_m, high_m, np.nan, np.nan, p)
 
 
 def is_between(places: FloatArray | IntArray, spans: FloatArray) -> BoolArray:

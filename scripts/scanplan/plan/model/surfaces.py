@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from scanplan.plan.model import glass_views, line_ends, things, wall_labels
+from scanplan.plan.model import glass_views, line_ends, line_labels, things, wall_labels
 from scanplan.plan.model.surface_features import Features, Surroundings
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
 
@@ -23,11 +23,14 @@ class LabelledSurfaces:
         How high each wall ends; NaN: at the ceiling, or not known.
     leaves_m : list of (2, 2) float64
         The surfaces of open leaves, from end to end.
+    nearly : list of plan_wall.Nearly
+        What is likelier something else: surfaces that may be walls, and openings of walls.
     """
 
     walls: list[PlanWall]
     tops_m: list[float]
     leaves_m: list[FloatArray]
+    nearly: list[Nearly]
 
 
 def label_surfaces(
@@ -58,14 +61,25 @@ def label_surfaces(
         for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
     ]
     found = observe_surfaces([part for part, _ in parts], rays)
-    kinds = things.choose_kinds(things.weigh_things(found))
-    kept = [part for part, kind in zip(parts, kinds, strict=True) if kind == things.WALL]
+    p = things.weigh_things(found)
+    kinds = things.choose_kinds(p)
+    kept = [
+        (replace(part, p_wall=float(p_wall)), top_m)
+        for (part, top_m), kind, p_wall in zip(parts, kinds, p[:, things.WALL], strict=True)
+        if kind == things.WALL
+    ]
+    nearly = [
+        Nearly("wall", part.ends, p_wall)
+        for (part, _), kind, p_wall in zip(parts, kinds, p[:, things.WALL].tolist(), strict=True)
+        if kind != things.WALL and p_wall >= line_labels.NEARLY
+    ]
     kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end
         tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
         leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
+        nearly=[*nearly, *(near for wall, _ in kept for near in wall.nearly)],
     )
 
 

@@ -13,7 +13,7 @@ from scanplan.plan.model import line_ends, line_labels, opening_edges, priors, s
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
 from scanplan.plan.openings import CLOSED, Opening
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_observation import FaceObservation
 from scanplan.rays.ray_set import RaySet
@@ -154,7 +154,21 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
         for opening in [opening_edges.measure_opening(wall, stretch)]
     ]
     openings.sort(key=lambda opening: opening.low_m)
-    opened = replace(part, openings=openings, closed=_list_hidden(part, openings))
+    opened = replace(
+        part,
+        openings=openings,
+        closed=_list_hidden(part, openings),
+        p_solid=_find_p_solid(run),
+        nearly=[
+            Nearly(
+                "door" if of.kind == "shut" else of.kind,
+                wall.line.at(np.array([of.low_m, of.high_m])),
+                of.p,
+            )
+            for stretch in run
+            for of in stretch.nearly
+        ],
+    )
     ways = [opening for opening in openings if not opening.is_above_wall]
     left, right = (
         [piece for face in side for piece in _cut_face(part, face, ways)]
@@ -162,6 +176,13 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
     )
     # what is nothing but openings has no face left, and is drawn by what is seen in them
     return replace(opened, left=left, right=right) if left else opened
+
+
+def _find_p_solid(run: Sequence[Stretch]) -> float:
+    """Return how probable what is no opening of a run is, in the mean of its length."""
+    solid = [stretch for stretch in run if not opening_edges.is_opening(stretch)]
+    whole_m = sum(stretch.length_m for stretch in solid)
+    return sum(stretch.p * stretch.length_m for stretch in solid) / whole_m if solid else np.nan
 
 
 def _turn(opening: Opening) -> Opening:

@@ -133,20 +133,12 @@ def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
 
 def _doubts(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Mark what is to be verified on site."""
-    tables = (("wall", plan.walls), ("face", plan.faces), ("opening", plan.openings))
-    places_m = {
-        f"{kind} {number}": line_m.mean(axis=0)
-        for kind, columns in tables
-        for number, line_m in zip(columns[kind], floorplan.centrelines_m(columns), strict=True)
-    }
-    centres = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
-    places_m |= {f"room {n}": np.array([x_m, y_m]) for n, x_m, y_m in zip(*centres, strict=True)}
     for doubt in doubts.list_doubts(plan):
-        x_m, y_m = (format_number(value) for value in places_m[doubt.element] * (1, -1))
-        css = f"doubt of-{doubt.element.partition(' ')[0]}"
+        x_m, y_m = (format_number(value) for value in doubt.place_m * (1, -1))
+        css = f"doubt of-{doubt.kind}" + " of-part" * doubt.is_part
         yield (
             f'<g class="{css}" data-element="{doubt.element}">'
-            f"<title>{escape(doubt.name)}: {escape(doubt.reason)}</title>"
+            f"<title>{escape(doubt.question)} {escape(doubt.name)}: {escape(doubt.reason)}</title>"
             f'<circle cx="{x_m}" cy="{y_m}" r="0.1"/>'
             f'<text x="{x_m}" y="{y_m}" dy=".36em">?</text></g>'
         )

@@ -40,7 +40,7 @@ def score_flags(elements: Columns) -> dict[str, float]:
         of_table = np.isin(elements["table"], RATED if table == "all" else [table])
         # a wall's faces are it once more
         chosen = drawn & of_table & ~((table == "all") & (elements["table"] == "wall"))
-        measures |= _measure(
+        measures |= measure_flags(
             table,
             elements["verdict"][chosen] == RIGHT,
             np.asarray(elements["flagged"][chosen], bool),
@@ -54,9 +54,10 @@ def score_flags(elements: Columns) -> dict[str, float]:
     return measures
 
 
-def _measure(
+def measure_flags(
     table: str, right: BoolArray, flagged: BoolArray, p_true: FloatArray
 ) -> dict[str, float]:
+    """Return what `score_flags` returns of one table, of elements (n,) that are right or not."""
     known = np.isfinite(p_true)
     sure = known & (p_true >= _SURE)
     return {
