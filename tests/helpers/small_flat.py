@@ -95,14 +95,20 @@ def sweep(pose, seed):
     return points[np.isfinite(points).all(axis=1)].astype(np.float32)
 
 
-def write_bag(folder):
-    """Write a drive through the flat as a bag, a scan a second; return the dataset's files."""
+def write_bag(folder, *, behind_ns=0):
+    """Write a drive through the flat as a bag, a scan a second; return the dataset's files.
+
+    The sensor's clock may be behind that of the poses. Messages are received some milliseconds
+    after they were stamped.
+    """
     maker = bag_making.Maker("ros1")
     entries = []
+    late_ns = np.random.default_rng(2).integers(5_000_000, 30_000_000, (len(way_poses()), 2))
     for i, pose in enumerate(way_poses()):
         t_ns = bag_making.START_NS + i * 10**9
-        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
-        entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
+        cloud = maker.cloud(t_ns - behind_ns, sweep(pose, i))
+        entries.append(("/amcl_pose", t_ns + late_ns[i, 0], maker.amcl(t_ns, pose[:3, 3])))
+        entries.append(("/points", t_ns + late_ns[i, 1], cloud))
     maker.write(folder / "run", entries)
     return dataset_files.find_files(folder)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from helpers import e57_making, las_making, ptx_making, small_flat
+from helpers import bag_making, e57_making, las_making, ptx_making, small_flat
 from scanplan.project import dataset_files
 
 
@@ -35,6 +35,14 @@ def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
 
 def test_clouds_in_the_map(tmp_path, bag_plan):
     plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_lio(tmp_path))
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_clouds_by_the_uptime_of_their_sensor(tmp_path, bag_plan):
+    behind_ns = bag_making.START_NS - 734 * 10**9
+    plan = small_flat.plan_of(
+        tmp_path / "plan", small_flat.write_bag(tmp_path, behind_ns=behind_ns)
+    )
     small_flat.assert_same_plan(plan, bag_plan)
 
 

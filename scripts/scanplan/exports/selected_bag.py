@@ -61,7 +61,9 @@ def copy_selected_scans(
             if scan_id is not None:
                 stamp_ns = int(stamps_ns[scan_id])
                 pose = _make_pose(stamp_ns, survey.map_frame, poses[scan_id])
-                writer.write_message(message[1], POSE_TOPIC, _POSE_TYPE, pose)
+                # where receipt tells the clouds' clock it is to tell it again
+                received_ns = message[1] - survey.lag_ns
+                writer.write_message(received_ns, POSE_TOPIC, _POSE_TYPE, pose)
                 n_messages += 1
             copy_message(writer, bag, message)
             n_messages += 1

@@ -156,8 +156,20 @@ def require_poses(
     if not covered[chosen].any():
         raise StageError(
             f"{where}: no scan has poses within {max_gap_s} s around it: clouds"
-            f" {_format_span(t_ns)}, poses {', '.join(spans)}; check the clocks or raise max_gap_s"
+            f" {_format_span(t_ns)}, poses {', '.join(spans)}; {_advise(t_ns, edges)}"
         )
+
+
+def _advise(t_ns: IntArray, edges: Sequence[FrameEdge]) -> str:
+    """Return what helps where no scan has a pose: beyond the poses no gap is bridged."""
+    tracks_ns = [edge.t_ns for edge in edges if edge.t_ns is not None]
+    if any((t_ns.max() < track[0]) or (t_ns.min() > track[-1]) for track in tracks_ns):
+        return (
+            "they are of different times, or of clocks that differ by what no time of receipt"
+            " tells: stamp both by one clock (of Ouster's driver: timestamp_mode"
+            " TIME_FROM_ROS_TIME)"
+        )
+    return "raise poses.max_gap_s"
 
 
 def _format_span(t_ns: IntArray) -> str:

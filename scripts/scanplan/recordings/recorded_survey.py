@@ -1,6 +1,7 @@
 """One survey recorded in ROS bags: its clouds, and the chains that place its sensor."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.recordings import (
     clocks,
+    cloud_clock,
     clouds,
     driver_messages,
     frame_edges,
@@ -130,12 +132,15 @@ class BagSurvey:
 
     @cached_property
     def _sweep_times(self) -> point_times.TimeConvention | None:
-        is_laser = self._cloud.msgtype in topics.LASERS
         return point_times.find_sweep_times(
             ((self._times_in_range(scan), scan.t_ns) for scan in self._first),
             str(self._cloud),
-            units=("s",) if is_laser else point_times.UNITS,
+            units=self._time_units,
         )
+
+    @property
+    def _time_units(self) -> Sequence[str]:
+        return ("s",) if self._cloud.msgtype in topics.LASERS else point_times.UNITS
 
     def _times_in_range(self, scan: _RawScan) -> Array | None:
         # points in the map are free of the sensor's motion
@@ -174,8 +179,34 @@ class BagSurvey:
         return SurveyTopics(self._cloud, list(small.values()))
 
     def stamps(self) -> IntArray:
-        """Return the header stamps of all clouds, (n,) int64, in scan_id order."""
-        return self._index.stamps_ns
+        """Return the stamps of all clouds, (n,) int64, in scan_id order, by the poses' clock."""
+        return self._aligned.stamps_ns
+
+    @property
+    def lag_ns(self) -> int:
+        """How long before its receipt a cloud's stamp is, as far as its clock was told by that."""
+        return self._aligned.sweep_ns
+
+    @cached_property
+    def _aligned(self) -> cloud_clock.AlignedStamps:
+        if self._pose_source is None:
+            return cloud_clock.AlignedStamps(self._index.stamps_ns)
+        return cloud_clock.align_stamps(
+            self._index,
+            self._pose_source,
+            self._cloud,
+            [bag.start_ns for bag in self._bags],
+            self._measure_sweep_ns,
+        )
+
+    def _measure_sweep_ns(self) -> int:
+        """Return how long after its stamp a cloud's last point is measured; 0 if it is not."""
+        timed = [(scan.time_raw, scan.t_ns) for scan in self._first if scan.time_raw is not None]
+        convention = point_times.find_time_convention(timed, self._time_units)
+        if convention is None:
+            return 0
+        last_s = [np.nanmax(convention.seconds(time_raw, t_ns)) for time_raw, t_ns in timed]
+        return max(0, int(np.median(last_s) * 1e9))
 
     def scans(
         self, wanted: Iterable[int], damaged: DamagedClouds | None = None
@@ -317,7 +348,7 @@ class BagSurvey:
                 scan = self._decode(cloud)
             except StageError:
                 continue
-            if len(self._keep_in_range(scan).xyz_m):
+            if clouds.is_in_range(scan.xyz_m, **self._limits).any():
                 scans.append(scan)
             if len(scans) == clouds.SCANS_TO_JUDGE:
                 break
@@ -342,12 +373,13 @@ class BagSurvey:
                 n_seen += 1
 
     def _read_scan(self, cloud: _CloudMessage) -> clouds.Scan:
-        return self._keep_in_range(self._decode(cloud), self.sweep_times)
+        scan = self._keep_in_range(self._decode(cloud), self.sweep_times)
+        return replace(scan, t_ns=int(self.stamps()[cloud.scan_id]))
 
     def _decode(self, cloud: _CloudMessage) -> _RawScan:
         bag = cloud.bag
         connection, _, raw = cloud.message
-        t_ns = bag.header(connection, raw)[0] or self.stamps()[cloud.scan_id]
+        t_ns = bag.header(connection, raw)[0] or self._index.stamps_ns[cloud.scan_id]
         message = bag.decode(connection, raw)
         try:
             return _RawScan(cloud.scan_id, t_ns, *_READERS[connection.msgtype](message))
