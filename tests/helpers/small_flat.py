@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import open3d
 import shapely
 from PIL import Image
 from scipy.spatial.transform import Rotation
@@ -110,6 +111,23 @@ def write_bag(folder, *, behind_ns=0):
         entries.append(("/amcl_pose", t_ns + late_ns[i, 0], maker.amcl(t_ns, pose[:3, 3])))
         entries.append(("/points", t_ns + late_ns[i, 1], cloud))
     maker.write(folder / "run", entries)
+    return dataset_files.find_files(folder)
+
+
+def write_scan_folder(folder, poses, clouds):
+    """Write clouds (n, 3), each in its sensor's frame, as PCD with poses (n, 4, 4) a second apart.
+
+    Open3D writes them.
+    """
+    (folder / "scans").mkdir(parents=True)
+    lines = []
+    for i, (pose, xyz_m) in enumerate(zip(poses, clouds, strict=True)):
+        points = xyz_m[np.isfinite(xyz_m).all(axis=1)].astype(np.float32)
+        cloud = open3d.t.geometry.PointCloud(np.ascontiguousarray(points))
+        open3d.t.io.write_point_cloud(str(folder / f"scans/{i}.pcd"), cloud)
+        (place,), (turn,) = se3.split_pose(pose[None])
+        lines.append(" ".join(map(str, [i + 1.0, *place.tolist(), *turn.tolist()])))
+    (folder / "poses.tum").write_text("\n".join(lines) + "\n")
     return dataset_files.find_files(folder)
 
 

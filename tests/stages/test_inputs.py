@@ -22,6 +22,15 @@ def test_stations(tmp_path, bag_plan, name, write):
     small_flat.assert_same_plan(plan, bag_plan)
 
 
+@pytest.mark.parametrize("kind", ["found", "stations"])
+def test_stations_of_a_tripod_as_clouds_with_poses(tmp_path, bag_plan, kind):
+    files = small_flat.write_scan_folder(
+        tmp_path / "flat", small_flat.station_poses(), small_flat.station_points()
+    )
+    plan = small_flat.plan_of(tmp_path / "plan", files, pose_kind=kind)
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
 def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
     xyz_m, since_s = small_flat.map_points()
     order = np.random.default_rng(4).permutation(len(xyz_m))

@@ -15,6 +15,8 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
 _FEWEST_TO_STAND = 10  # a second of most sensors
+_STOOD_M = 0.05  # what poses of a sensor that stands scatter by, and 0.05 rad of a turn
+_MOST_OF_A_SPOT = 100  # scans: ten seconds of most sensors; more differ by noise alone
 
 
 def choose_candidates(
@@ -71,6 +73,26 @@ def choose_candidates(
             is_due = False
             last = i if has_pose[i] else last
     return np.array(chosen, np.int64)
+
+
+def thin_less_standing(world_from_sensor: FloatArray, has_pose: BoolArray, keep_every: int) -> int:
+    """Return every how many-th scan is a candidate: of a sensor that never moved each, up to 100.
+
+    Parameters
+    ----------
+    world_from_sensor : (n, 4, 4) float
+    has_pose : (n,) bool
+    keep_every : int
+        Of a sensor that moves.
+    """
+    poses = np.asarray(world_from_sensor, float)[has_pose]
+    if len(poses) == 0 or np.ptp(poses, axis=0).max() > _STOOD_M:
+        return keep_every
+    fewer = min(keep_every, int(np.ceil(len(poses) / _MOST_OF_A_SPOT)))
+    if fewer < keep_every:
+        taken = "each" if fewer == 1 else f"one in {fewer}"
+        log.log_line(f"the sensor stood still: {taken} of its {len(poses):,} turns is a candidate")
+    return fewer
 
 
 def measure_standing(world_from_sensor: FloatArray, has_pose: BoolArray) -> Measured:
