@@ -27,6 +27,7 @@ from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import lidar_odometry, point_times
 from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -74,6 +75,7 @@ class BagSurvey:
     base_from_sensor : (6,) float or None
         x, y, z in metres, roll, pitch, yaw in degrees.
     min_range_m, max_range_m : float
+    units : units.Units, optional
     max_damaged_share : float
         Of the clouds that are read.
     pose_kind : str, optional
@@ -95,6 +97,7 @@ class BagSurvey:
         base_from_sensor: Sequence[float] | None,
         min_range_m: float,
         max_range_m: float,
+        units: Units = IN_METRES,
         max_damaged_share: float = 0.0,
         pose_kind: str = FOUND,
     ) -> None:
@@ -104,6 +107,7 @@ class BagSurvey:
             (topic for bag in self._bags for topic in bag.topics), self._where
         )
         self._cloud = topics.choose_cloud_topic(self._topics, cloud_topic, self._where)
+        self.units = units
         self._pose_topic = pose_topic
         self._wanted_pose_kind = pose_kind
         self._base_frame = base_frame
@@ -327,7 +331,7 @@ class BagSurvey:
                 if topic.msgtype in topics.TRANSFORMS and topic != self._pose_source
             ]
         return small_messages.read_small_messages(
-            self._bags, self._cloud, needed, self._odometry, self._where
+            self._bags, self._cloud, needed, self._odometry, self._where, self.units.pose_m
         )
 
     @cached_property
@@ -382,7 +386,8 @@ class BagSurvey:
         t_ns = bag.header(connection, raw)[0] or self._index.stamps_ns[cloud.scan_id]
         message = bag.decode(connection, raw)
         try:
-            return _RawScan(cloud.scan_id, t_ns, *_READERS[connection.msgtype](message))
+            xyz, time_raw = _READERS[connection.msgtype](message)
+            return _RawScan(cloud.scan_id, t_ns, self.units.cloud_m * xyz, time_raw)
         except StageError as error:
             raise StageError(
                 f"{bag.path}: topic {connection.topic}, scan {cloud.scan_id} at"

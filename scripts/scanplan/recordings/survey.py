@@ -11,6 +11,8 @@ from scanplan.recordings.motion.deskew import DeskewedSurvey
 from scanplan.recordings.motion.pose_kind import FOUND
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
+from scanplan.recordings.units import Units
+from scanplan.stage import log
 
 
 @contextmanager
@@ -24,6 +26,8 @@ def open_survey(
     ros2_release: str = "humble",
     min_range_m: float = 0.0,
     max_range_m: float = math.inf,
+    cloud_unit: str = "m",
+    pose_unit: str = "m",
     max_damaged_share: float = 0.0,
     salvage: bool = False,
     deskew: bool = True,
@@ -47,6 +51,8 @@ def open_survey(
         Whose message definitions hold where a ROS 2 bag carries none.
     min_range_m, max_range_m : float
         Points outside are dropped.
+    cloud_unit, pose_unit : str
+        What points, and poses and transforms, are recorded in: of `units.METRES`.
     max_damaged_share : float
         So many of the scans that are read may be damaged; they come without points.
     salvage : bool
@@ -73,13 +79,16 @@ def open_survey(
         "pose_topic": pose_topic,
         "base_frame": base_frame,
     }
-    common = {
+    common: dict[str, Any] = {
         "base_from_sensor": base_from_sensor,
         "min_range_m": min_range_m,
         "max_range_m": max_range_m,
+        "units": Units(cloud_unit, pose_unit),
         "max_damaged_share": max_damaged_share,
         "pose_kind": pose_kind,
     }
+    if scaled := common["units"].describe():
+        log.log_line(scaled)
     opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
         survey = _open_recordings(files, stack, opening, topics_and_frame, common)
