@@ -114,6 +114,74 @@ def write_bag(folder, *, behind_ns=0):
     return dataset_files.find_files(folder)
 
 
+def write_two_robots(folder):
+    """Write the drive of /robot1, beside another robot's of the same frames and topics' names.
+
+    The other goes the way back, and its sensor is mounted otherwise.
+    """
+    maker = bag_making.Maker("mcap")
+    entries = []
+    ways = {"/robot1": (way_poses(), 0.2), "/robot2": (way_poses()[::-1], 0.35)}
+    for robot, (poses, up_m) in ways.items():
+        mount = (bag_making.START_NS, "base_link", "lidar", (0, 0, up_m))
+        entries.append((f"{robot}/tf_static", bag_making.START_NS, maker.transforms(mount)))
+        for i, pose in enumerate(poses):
+            t_ns = bag_making.START_NS + i * 10**9
+            base = pose[:3, 3] - (0, 0, up_m)
+            moved = maker.transforms((t_ns, "map", "base_link", base))
+            entries.append((f"{robot}/tf", t_ns, moved))
+            entries.append((f"{robot}/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
+def mount_scanner(x_m, yaw_deg):
+    """Return a scanner's place (4, 4) on the robot, ahead of its middle and turned."""
+    mount = np.eye(4)
+    mount[:3, :3] = Rotation.from_euler("z", yaw_deg, degrees=True).as_matrix()
+    mount[0, 3] = x_m
+    return mount
+
+
+MIDDLE = {"scan": mount_scanner(0.0, 0.0)}
+FRONT_AND_REAR = {"front": mount_scanner(0.25, 0.0), "rear": mount_scanner(-0.2, 180.0)}
+
+
+def write_scanners(folder, mounts, *, planar=True, half_deg=90.0):
+    """Write a drive of a robot with scanners that see as far to both sides as given each."""
+    maker = bag_making.Maker("sqlite3")
+    entries = []
+    for i, (name, mount) in enumerate(mounts.items()):
+        (at_m,), (turn,) = se3.split_pose(mount[None])
+        mounting = (bag_making.START_NS, "base_link", name, at_m, turn)
+        entries.append(("/tf_static", bag_making.START_NS, maker.transforms(mounting)))
+        for row, pose in enumerate(way_poses()):
+            t_ns = bag_making.START_NS + row * 10**9
+            if i == 0:
+                entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
+            see_one = scan_plane if planar else sweep_part
+            scan = see_one(maker, t_ns, pose @ mount, half_deg, name, row + 100 * i)
+            entries.append((f"/{name}", t_ns, scan))
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
+def scan_plane(maker, t_ns, pose, half_deg, frame, seed):
+    """Return a LaserScan of beams every half degree, as far to both sides as given."""
+    angle = np.radians(np.arange(-half_deg, half_deg, 0.5))
+    beams = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
+    range_m = np.linalg.norm(see(pose, beams, seed), axis=1)
+    angles = {"angle_min": angle[0], "angle_max": angle[-1], "angle_increment": np.radians(0.5)}
+    return maker.laser(t_ns, np.nan_to_num(range_m, nan=np.inf), frame=frame, **angles)
+
+
+def sweep_part(maker, t_ns, pose, half_deg, frame, seed):
+    """Return a PointCloud2 of what 16 beams see, as far to both sides as given."""
+    points = sweep(pose, seed)
+    azimuth_deg = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
+    return maker.cloud(t_ns, points[np.abs(azimuth_deg) <= half_deg], frame=frame)
+
+
 def write_scan_folder(folder, poses, clouds):
     """Write clouds (n, 3), each in its sensor's frame, as PCD with poses (n, 4, 4) a second apart.
 

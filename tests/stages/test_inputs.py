@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from helpers import bag_making, e57_making, las_making, ptx_making, small_flat
+from scanplan.errors import StageError
 from scanplan.project import dataset_files
 
 
@@ -53,6 +54,31 @@ def test_clouds_by_the_uptime_of_their_sensor(tmp_path, bag_plan):
         tmp_path / "plan", small_flat.write_bag(tmp_path, behind_ns=behind_ns)
     )
     small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_one_of_two_robots_by_its_own_namespace(tmp_path, bag_plan):
+    files = small_flat.write_two_robots(tmp_path)
+    with pytest.raises(StageError, match=r"/robot1/points.*/robot2/points.*input\.cloud_topic"):
+        small_flat.plan_of(tmp_path / "none", files)
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_topic="/robot1/points")
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+@pytest.fixture(scope="module")
+def laser_plan(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("laser")
+    files = small_flat.write_scanners(folder, small_flat.MIDDLE, half_deg=180)
+    return small_flat.plan_of(folder / "plan", files)
+
+
+@pytest.mark.parametrize(("planar", "half_deg"), [(True, 90), (False, 180)])
+def test_a_scanner_in_front_and_one_behind(tmp_path, bag_plan, laser_plan, planar, half_deg):
+    both = small_flat.FRONT_AND_REAR
+    files = small_flat.write_scanners(tmp_path, both, planar=planar, half_deg=half_deg)
+    with pytest.raises(StageError, match=r"/front.*/rear.*input\.cloud_topic.*as a list"):
+        small_flat.plan_of(tmp_path / "none", files)
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_topic=["/front", "/rear"])
+    small_flat.assert_same_plan(plan, laser_plan if planar else bag_plan)
 
 
 def test_a_grid_map_to_half_a_cell(tmp_path, bag_plan):

@@ -107,6 +107,9 @@ class BagSurvey:
             (topic for bag in self._bags for topic in bag.topics), self._where
         )
         self._cloud = topics.choose_cloud_topic(self._topics, cloud_topic, self._where)
+        self._own_topics = topics.leave_other_robots(self._topics, self._cloud)
+        if others := [t.name for t in self._topics if t not in self._own_topics]:
+            log.log_line(f"{self._where}: of another robot, left out: {', '.join(others)}")
         self.units = units
         self._pose_topic = pose_topic
         self._wanted_pose_kind = pose_kind
@@ -178,7 +181,7 @@ class BagSurvey:
 
     def list_topics(self) -> SurveyTopics:
         """Return the topics of the clouds, and of poses, transforms and odometry."""
-        transforms = [t for t in self._topics if t.msgtype in topics.TRANSFORMS]
+        transforms = [t for t in self._own_topics if t.msgtype in topics.TRANSFORMS]
         small = {t.name: t for t in (*self._pose_sources, *transforms, *self._odometry)}
         return SurveyTopics(self._cloud, list(small.values()))
 
@@ -247,8 +250,11 @@ class BagSurvey:
 
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
-        losses = filter(None, (bag.describe_loss() for bag in self._bags))
-        return [*losses, *self._damaged.describe()]
+        return [*self.describe_losses(), *self._damaged.describe()]
+
+    def describe_losses(self) -> list[str]:
+        """Return what of the recordings is lost whatever was read, in sentences."""
+        return [loss for loss in (bag.describe_loss() for bag in self._bags) if loss]
 
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
@@ -304,7 +310,8 @@ class BagSurvey:
         """The topic of the poses; None where they are estimated from the clouds."""
         if self._wanted_pose_kind == ESTIMATED:
             return None
-        return topics.choose_pose_topic(self._topics, self._pose_topic, self._where)
+        known = self._topics if self._pose_topic else self._own_topics
+        return topics.choose_pose_topic(known, self._pose_topic, self._where)
 
     @property
     def _pose_sources(self) -> list[topics.Topic]:
@@ -315,7 +322,7 @@ class BagSurvey:
         """Topics of odometry besides the one that the poses are from; the most frequent first."""
         odometry = [
             topic
-            for topic in self._topics
+            for topic in self._own_topics
             if topic.msgtype == topics.ODOMETRY and topic.count and topic != self._pose_source
         ]
         return sorted(odometry, key=lambda topic: (-topic.count, topic.name))
@@ -327,7 +334,7 @@ class BagSurvey:
         if self._extrinsics is None or of_transforms:
             needed += [
                 topic
-                for topic in self._topics
+                for topic in self._own_topics
                 if topic.msgtype in topics.TRANSFORMS and topic != self._pose_source
             ]
         return small_messages.read_small_messages(

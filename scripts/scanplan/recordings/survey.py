@@ -19,7 +19,7 @@ from scanplan.stage import log
 def open_survey(
     files: Sequence[str],
     *,
-    cloud_topic: str | None = None,
+    cloud_topic: str | Sequence[str] | None = None,
     pose_topic: str | None = None,
     base_frame: str | None = None,
     base_from_sensor: Sequence[float] | None = None,
@@ -41,7 +41,8 @@ def open_survey(
     files : sequence of str
         As `dataset_files.find_files` gives them.
     cloud_topic, pose_topic : str, optional
-        Where there are several candidates. `pose_topic` may be /tf.
+        Where there are several candidates. `cloud_topic` may be several, of the scanners of one
+        robot; `pose_topic` may be /tf.
     base_frame : str, optional
         The frame that the poses are of.
     base_from_sensor : (6,) float, optional
@@ -99,7 +100,7 @@ def _open_recordings(
     files: Sequence[str],
     stack: ExitStack,
     opening: Mapping[str, Any],
-    topics_and_frame: Mapping[str, str | None],
+    topics_and_frame: Mapping[str, Any],
     common: Mapping[str, Any],
 ) -> Survey:
     # rosbags and Open3D cost a second each to import: only the one that is needed
@@ -132,4 +133,14 @@ def _open_recordings(
         stack.enter_context(bags.open_bag(path, **opening))
         for path in dataset_files.group_recordings(files)
     ]
-    return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+    names = topics_and_frame["cloud_topic"]
+    if names is None or isinstance(names, str):
+        return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+    from scanplan.recordings import scanner_drives
+
+    surveys = [
+        recorded_survey.BagSurvey(opened, **{**topics_and_frame, "cloud_topic": name}, **common)
+        for name in names
+    ]
+    share = common["max_damaged_share"]
+    return scanner_drives.ScannerDrives(surveys, max_damaged_share=share)
