@@ -135,6 +135,13 @@ def write_two_robots(folder):
     return dataset_files.find_files(folder)
 
 
+def shift(*xyz_m):
+    """Return a pose (4, 4) that is not turned."""
+    pose = np.eye(4)
+    pose[:3, 3] = xyz_m
+    return pose
+
+
 def mount_scanner(x_m, yaw_deg):
     """Return a scanner's place (4, 4) on the robot, ahead of its middle and turned."""
     mount = np.eye(4)
@@ -180,6 +187,44 @@ def sweep_part(maker, t_ns, pose, half_deg, frame, seed):
     points = sweep(pose, seed)
     azimuth_deg = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
     return maker.cloud(t_ns, points[np.abs(azimuth_deg) <= half_deg], frame=frame)
+
+
+def write_nodding_laser(folder, n_sweeps=36):
+    """Write a drive of a robot whose laser nods once a second, from 50 degrees up to 50 down."""
+    maker = bag_making.Maker("mcap")
+    angle = np.radians(np.arange(0, 360, 1.5))
+    beams = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
+    angles = {"angle_max": angle[-1], "angle_increment": np.radians(1.5)}
+    base, tilt = np.eye(4), np.eye(4)
+    tilt[2, 3] = 0.1
+    laser_m = (0.03, 0, 0.02)
+    entries = []
+    for child, parent, place in (("laser", "tilt", laser_m), ("mount", "base_link", (0, 0, 0.3))):
+        still = maker.transforms((bag_making.START_NS, parent, child, place))
+        entries.append(("/tf_static", bag_making.START_NS, still))
+    way_m = way_poses()[:, :3, 3] - (0, 0, 0.4)
+    yaw_rad = 0.9 * np.sin(np.arange(len(way_m)) / 4)
+    for i, (at_m, yaw) in enumerate(zip(way_m, yaw_rad, strict=True)):
+        base[:3, :3] = Rotation.from_euler("z", yaw).as_matrix()
+        base[:3, 3] = at_m
+        quat = se3.split_pose(base[None])[1][0]
+        # it stands for a nod, and goes on while the mount turns back
+        for since_s in (0.0, 0.95):
+            t_ns = bag_making.START_NS + i * 10**9 + round(since_s * 1e9)
+            entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, at_m, quat)))
+        for row in range(n_sweeps):
+            t_ns = bag_making.START_NS + i * 10**9 + round(0.95e9 * row / n_sweeps)
+            share = row / (n_sweeps - 1)
+            pitch = np.radians(100) * ((share if i % 2 else 1 - share) - 0.5)
+            tilt[:3, :3] = Rotation.from_euler("y", pitch).as_matrix()
+            (place,), (turn,) = se3.split_pose(tilt[None])
+            moved = maker.transforms((t_ns, "mount", "tilt", place, turn))
+            pose = base @ shift(0, 0, 0.3) @ tilt @ shift(*laser_m)
+            range_m = np.linalg.norm(see(pose, beams, 100 * i + row), axis=1)
+            scan = maker.laser(t_ns, np.nan_to_num(range_m, nan=np.inf), **angles)
+            entries += [("/tf", t_ns, moved), ("/scan", t_ns, scan)]
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
 
 
 def write_scan_folder(folder, poses, clouds):

@@ -81,6 +81,11 @@ def test_a_scanner_in_front_and_one_behind(tmp_path, bag_plan, laser_plan, plana
     small_flat.assert_same_plan(plan, laser_plan if planar else bag_plan)
 
 
+def test_a_laser_on_a_mount_that_nods(tmp_path, bag_plan):
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_nodding_laser(tmp_path))
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
 def test_a_grid_map_to_half_a_cell(tmp_path, bag_plan):
     plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_grid_map(tmp_path / "flat"))
     small_flat.assert_same_plan(plan, bag_plan, wall_m=0.03, door_m=0.06)

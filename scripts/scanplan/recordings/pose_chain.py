@@ -13,7 +13,6 @@ from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import IntArray
 
-_BASE_FRAMES = ("base_link", "base_footprint")
 _ODOM = "odom"
 
 
@@ -124,7 +123,7 @@ class PoseChains:
         """Return the frame of tf that the sensor hangs on, and the edges from there."""
         if self._extrinsics is None:
             return self._index.sensor_frame, []
-        bases = [frame for frame in _BASE_FRAMES if frame in self._tree.frames]
+        bases = [frame for frame in tf_tree.BASE_FRAMES if frame in self._tree.frames]
         return self._base_frame or (bases[0] if bases else None), self._extrinsics
 
     def _chain_of_track(self, source: topics.Topic) -> list[frame_edges.FrameEdge]:

@@ -135,7 +135,10 @@ def _open_recordings(
     ]
     names = topics_and_frame["cloud_topic"]
     if names is None or isinstance(names, str):
-        return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+        from scanplan.recordings import nodding_sweeps
+
+        survey = recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+        return nodding_sweeps.take_nods(survey)
     from scanplan.recordings import scanner_drives
 
     surveys = [
