@@ -35,11 +35,12 @@ def mount_at(t_s, about="y"):
     return pose
 
 
-def ranges_at(t_s, about):
+def ranges_at(t_s, about, stands):
     """How far the wall x = 4 m is along each beam at its own moment."""
     found = []
     for i, angle in enumerate(BEAM_RAD):
-        pose = base_at(t_s + i * BEAM_S) @ mount_at(t_s + i * BEAM_S, about)
+        base = base_at(0 if stands else t_s + i * BEAM_S)
+        pose = base @ mount_at(t_s + i * BEAM_S, about)
         way = pose[:3, :3] @ [np.cos(angle), np.sin(angle), 0]
         found.append((WALL_M - pose[0, 3]) / way[0])
     return np.array(found)
@@ -58,12 +59,12 @@ def record(folder, *, poses="topic", about="y", n=100):
         (at_m,), (quat,) = se3.split_pose(base_at(t_s)[None])
         if poses == "topic":
             entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, at_m, quat)))
-        else:
+        elif poses == "tf":
             moving.append((t_ns, "odom", "base_link", at_m, quat))
         entries.append(("/tf", t_ns, maker.transforms(*moving)))
     for i in range(n):
         t_ns = START + round(i * SWEEP_S * 1e9)
-        scan = maker.laser(t_ns, ranges_at(i * SWEEP_S, about), **angles)
+        scan = maker.laser(t_ns, ranges_at(i * SWEEP_S, about, poses == "none"), **angles)
         entries.append(("/scan", t_ns, scan))
     maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
     return dataset_files.find_files(folder)
@@ -86,6 +87,16 @@ def test_sweeps_of_a_nod_lie_on_the_wall_that_they_show(tmp_path, caplog, poses)
         seen_m = se3.transform_points(at, scan.xyz_m)
         np.testing.assert_allclose(seen_m[:, 0], WALL_M, atol=2e-3)
         assert np.ptp(seen_m[:, 2]) > 4 * np.tan(np.radians(40))  # up and down
+
+
+def test_of_a_robot_that_stands_the_mount_alone_moves(tmp_path):
+    with open_survey(record(tmp_path, poses="none")) as survey:
+        t_ns = survey.stamps()
+        pose, _, covered = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1.0)
+        scans = list(survey.scans(range(4)))
+    assert covered.all() and np.ptp(pose, axis=0).max() == 0
+    for at, scan in zip(pose, scans, strict=True):
+        np.testing.assert_allclose(se3.transform_points(at, scan.xyz_m)[:, 0], WALL_M, atol=2e-3)
 
 
 def test_a_single_nod_can_be_asked_for(tmp_path):
@@ -125,10 +136,17 @@ def test_a_mount_that_goes_round_makes_a_scan_of_half_a_turn():
     assert nods_of(np.arange(0, 541, 45)) == [(0, 5), (4, 9), (8, 13)]
 
 
-@pytest.mark.parametrize(("swing_deg", "is_found"), [(60, True), (12, False)])
-def test_a_robot_on_a_ramp_does_not_nod(swing_deg, is_found):
+@pytest.mark.parametrize(
+    ("swing_deg", "way_m", "is_found"),
+    [
+        (60, 0.1, True),
+        (12, 0.1, False),  # a robot on a ramp
+        (60, 3.0, False),  # a hand that carries it
+    ],
+)
+def test_what_nods_is_a_mount(swing_deg, way_m, is_found):
     t_ns = np.arange(40) * S // 10
-    rows = np.tile([0.0, 0, 0], (40, 1))
+    rows = np.linspace(0, way_m, 40)[:, None] * [1.0, 0, 0]
     still = np.tile([0.0, 0, 0, 1], (40, 1))
     pitch = np.radians(swing_deg / 2) * np.sin(np.arange(40) / 3)
     quat = Rotation.from_euler("y", pitch[:, None]).as_quat()
@@ -137,5 +155,5 @@ def test_a_robot_on_a_ramp_does_not_nod(swing_deg, is_found):
         frame_edges.FrameEdge("base_link", "laser", rows, quat, t_ns),
     ]
     assert (nodding_sweeps.find_nods(chain, t_ns) is not None) == is_found
-    # of one that carries nothing that moves tf says nothing
-    assert nodding_sweeps.find_nods(chain[1:], t_ns) is None
+    # as well of a robot that stands, which moves nothing else
+    assert (nodding_sweeps.find_nods(chain[1:], t_ns) is not None) == is_found

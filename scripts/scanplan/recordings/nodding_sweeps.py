@@ -24,6 +24,7 @@ from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
 
 _LEAST_SWING = np.radians(20.0)  # of the mount: wheels on a ramp and hands tilt a laser by less
+_MOST_REACH_M = 0.5  # of the laser on its mount: what goes farther is carried by a robot or a hand
 _USUAL = (0.05, 0.95)  # of the mount's angles: the rest is how it came to begin
 _MOST_ALONG = 0.5  # of an axis along the laser's own, about which its plane stays the same
 _TURNS_BACK = 0.1  # of the swing: less is how a motor holds
@@ -71,12 +72,12 @@ def find_nods(edges: Sequence[FrameEdge], t_ns: IntArray) -> Nods | None:
         Of the sweeps.
     """
     moving = [i for i, edge in enumerate(edges) if edge.t_ns is not None]
-    if len(moving) < 2:
+    if not moving:
         return None
     mount = edges[moving[-1] :]
     pose, _, covered = frame_edges.chain_poses(mount, t_ns, max_gap_s=_MOST_GAP_S)
     known = np.flatnonzero(covered)
-    if len(known) < 3:
+    if len(known) < 3 or np.ptp(pose[known, :3, 3], axis=0).max() > _MOST_REACH_M:
         return None
     angle_rad = _follow_angle(pose[known, :3, :3])
     swing_rad = float(np.ptp(np.quantile(angle_rad, _USUAL)))

@@ -1,6 +1,7 @@
 """The tf tree: which frames hang on which, and the way from one to another."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -169,7 +170,9 @@ class FrameTree:
         def is_rigid(edge: FrameEdge) -> bool:
             return edge.t_ns is None and is_below(edge)
 
-        above = [edge.parent for edge in self.up(frame, is_below)]
+        above: list[str] = []
+        with suppress(StageError):  # what moves above may be placed by two localisers
+            above.extend(edge.parent for edge in self.up(frame, is_below))
         bases = [name for name in above if name.rsplit("/", 1)[-1] in BASE_FRAMES]
         frame = bases[0] if bases else frame
         return [frame, *(edge.parent for edge in self.up(frame, is_rigid))][-1]
