@@ -103,6 +103,13 @@ def test_scanners_that_nothing_places_apart_are_refused(tmp_path):
         assert all(word in str(refused.value) for word in (*BOTH, "/tf_static", "one topic"))
 
 
+def test_scanners_without_poses_are_refused(tmp_path):
+    files = record(tmp_path)
+    refused = pytest.raises(StageError, match="without recorded poses /front and /rear")
+    with refused, opened(files, pose_kind="estimated"):
+        pass
+
+
 def test_a_scanner_in_the_plane_and_one_in_space_are_no_survey(tmp_path):
     files = record(tmp_path, rear_kind="laser")
     with (

@@ -98,6 +98,11 @@ def test_topics_of_other_robots_are_left_out(cloud, others, kept):
     assert found == [own, *(present[1 + i] for i in kept)]
 
 
+def test_what_lies_beside_a_second_scanner_is_no_other_robots():
+    present = [*named(CLOUD, "/left/points", "/right/points"), *named(ODOM, "/right/odom")]
+    assert topics.leave_other_robots(present, present[0]) == present
+
+
 def test_merge_adds_up_and_refuses_two_types():
     assert topics.merge_topics([CLOUD, AMCL, CLOUD], "d") == [AMCL, Topic("/points", CLOUDS[0], 18)]
     with pytest.raises(StageError, match="/points"):

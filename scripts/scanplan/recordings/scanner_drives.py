@@ -18,6 +18,7 @@ from scanplan.recordings.clouds import Scan
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
+from scanplan.recordings.motion.pose_kind import ESTIMATED
 from scanplan.recordings.recorded_survey import BagSurvey
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
@@ -40,7 +41,7 @@ class ScannerDrives:
     Raises
     ------
     StageError
-        If some measure in a plane and others in space.
+        If some measure in a plane and others in space, or no poses are recorded.
     """
 
     def __init__(self, surveys: Sequence[BagSurvey], *, max_damaged_share: float = 0.0) -> None:
@@ -48,6 +49,11 @@ class ScannerDrives:
         self._max_damaged_share = max_damaged_share
         self._damaged = DamagedClouds(0, max_damaged_share)
         self._names = [survey.list_topics().cloud.name for survey in surveys]
+        if self.pose_kind == ESTIMATED:
+            raise StageError(
+                f"input.cloud_topic: without recorded poses {' and '.join(self._names)} are not"
+                " placed in one map; give one topic"
+            )
         if len({survey.planar for survey in surveys}) > 1:
             raise StageError(
                 f"input.cloud_topic: {', '.join(self._names)} measure in a plane and in space; give"

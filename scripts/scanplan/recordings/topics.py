@@ -133,10 +133,12 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
 def leave_other_robots(topics: Sequence[Topic], cloud: Topic) -> list[Topic]:
     """Return the topics without those of other robots than the one that has a cloud's topic.
 
-    A namespace beside one of the cloud's is another robot's where a topic of both is called alike
-    and of one type: /robot2 beside /robot1 for /robot1/points, as both have odom or tf.
+    A namespace beside one of the cloud's is another robot's where poses or transforms in both are
+    called alike and of one type: /robot2 beside /robot1 for /robot1/points, as both have odom or
+    tf. A second scanner has neither.
     """
-    known = {(topic.name.lstrip("/"), topic.msgtype) for topic in topics}
+    placing = (*POSES, PATH, *TRANSFORMS)
+    known = {(t.name.lstrip("/"), t.msgtype) for t in topics if t.msgtype in placing}
     own = cloud.name.lstrip("/").split("/")[:-1]
     others = set()
     for topic in topics:
