@@ -16,7 +16,7 @@ AT_M = {"front": (0.3, 0, 0), "rear": (-0.2, 0, 0)}
 BACK = (0, 0, 1, 0)
 
 
-def record(folder, *, tf=True, rear_kind="cloud", broken=()):
+def record(folder, *, tf=True, rear_kind="cloud", broken=(), unset=()):
     """A robot that goes along x at 1 m/s; the rear scanner looks back, half a second later."""
     maker = bag_making.Maker()
     entries = []
@@ -33,6 +33,8 @@ def record(folder, *, tf=True, rear_kind="cloud", broken=()):
         points = bag_making.room_points() + np.float32(i)
         scan = maker.laser(rear_ns, np.ones(8), "rear")
         rear = maker.cloud(rear_ns, points + np.float32(50), "rear")
+        if i in unset:
+            rear.header.stamp = maker.stamp(1)
         if i in broken:
             rear.data = rear.data[:-4]
         entries.append(("/front", front_ns, maker.cloud(front_ns, points, "front")))
@@ -101,6 +103,15 @@ def test_scanners_that_nothing_places_apart_are_refused(tmp_path):
         with opened(files, **settings) as survey, pytest.raises(StageError) as refused:
             survey.pose_edges()
         assert all(word in str(refused.value) for word in (*BOTH, "/tf_static", "one topic"))
+
+
+def test_a_stamp_of_another_age_is_refused(tmp_path):
+    files = record(tmp_path, unset=(3,))
+    with (
+        opened(files) as survey,
+        pytest.raises(StageError, match=r"19,676 days apart, at most 365"),
+    ):
+        survey.stamps()
 
 
 def test_scanners_without_poses_are_refused(tmp_path):

@@ -26,6 +26,7 @@ from scanplan.types import IntArray
 
 _APART_NS = 3600 * 10**9
 """Between drives: so long that no limit of a drive's pace is met."""
+_LONGEST_NS = 365 * 24 * _APART_NS  # of a drive: more is a clock that was not set, or a fault
 
 
 class ScannerDrives:
@@ -79,7 +80,15 @@ class ScannerDrives:
     def _shifts_ns(self) -> list[int]:
         """What is added to the times of each drive."""
         of_each = [survey.stamps() for survey in self._surveys]
-        first_ns, last_ns = (min(s.min() for s in of_each), max(s.max() for s in of_each))
+        of_poses = [t_ns for survey in self._surveys for t_ns in _times_of(survey.pose_edges())]
+        first_ns, *_, last_ns = np.sort(np.concatenate([*of_each, *of_poses]))
+        if last_ns - first_ns > _LONGEST_NS:
+            raise StageError(
+                f"input.cloud_topic: stamps of {' and '.join(self._names)} lie"
+                f" {(last_ns - first_ns) / _APART_NS / 24:,.0f} days apart, at most"
+                f" {_LONGEST_NS // _APART_NS // 24} are one drive's; leave out clouds of wrong"
+                " stamps, or give one topic"
+            )
         step_ns = (int(last_ns - first_ns) // _APART_NS + 2) * _APART_NS
         log.log_line(
             f"scanners {', '.join(self._names)}: {', '.join(f'{len(s):,}' for s in of_each)} scans,"

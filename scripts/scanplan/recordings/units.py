@@ -2,15 +2,8 @@
 
 from typing import NamedTuple
 
-from scipy import constants
-
-METRES = {
-    "m": 1.0,
-    "cm": constants.centi,
-    "mm": constants.milli,
-    "in": constants.inch,
-    "ft": constants.foot,
-}
+METRES = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
+"""How long each is, by definition; inches and feet are the international ones."""
 
 
 class Units(NamedTuple):
