@@ -67,6 +67,7 @@ def interpolate_poses(
         pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
         if survey.pose_kind == pose_kind.STATIONS:
             keep_every = 1
+        keep_every = candidates.thin_less_standing(pose, covered, keep_every)
         spacing = {"keep_every": keep_every, "max_step_m": max_step_m, "max_turn_deg": max_turn_deg}
         measured.append(candidates.measure_standing(pose, covered))
         is_steady = np.ones(len(t_ns), bool)

@@ -60,7 +60,8 @@ def write_reduced_bag(
         if not isinstance(survey, BagSurvey):
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"
-                " no messages; ask for the plan, which chooses among them"
+                " no messages, or its scans are of several scanners or sweeps; ask for the plan,"
+                " which chooses among them, or for one scanner"
             )
         if survey.pose_kind == ESTIMATED:
             raise StageError(

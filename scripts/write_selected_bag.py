@@ -58,7 +58,8 @@ def write_selected_bag(
         if not isinstance(survey, BagSurvey):
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"
-                f" no messages; copy the files of the {len(scan_ids)} scans of {selection} instead"
+                f" no messages, or its scans are of several scanners or sweeps; copy the files of"
+                f" the {len(scan_ids)} scans of {selection} instead, or ask for one scanner"
             )
         n_messages = selected_bag.copy_selected_scans(output, survey, scan_ids, poses)
         own_settings = selected_bag.reading_settings(survey, dict(reading))

@@ -63,11 +63,15 @@ def drive_apart(parts, _):
     return parts, {}
 
 
-def give_metres(scale):
-    def give(drive, _):
-        return [lies.scale_both(drive, 1 / scale)], {}
+def set_units(unit, *keys):
+    """Return a remedy that states a unit by keys of `input`, which have to be what was advised."""
 
-    return give
+    def state(drive, found):
+        advised = str(found) if isinstance(found, StageError) else found.remedy
+        assert all(f"advanced.input.{key}" in advised for key in keys), advised
+        return [drive], dict.fromkeys(keys, unit)
+
+    return state
 
 
 _NOTHING = None
@@ -83,8 +87,13 @@ REMEDIES = {
     "poses 0.5 s late": set_clocks,
     **{name: state_mount(name) for name in _TURN},
     "second bag beside the first": drive_apart,
-    "all in feet": give_metres(1 / lies.FOOT_M),
-    "all in centimetres": give_metres(100.0),
+    "all in feet": set_units("ft", "cloud_unit", "pose_unit"),
+    "ranges in feet": set_units("ft", "cloud_unit"),
+    "poses in feet": set_units("ft", "pose_unit"),
+    "all in centimetres": set_units("cm", "cloud_unit", "pose_unit"),
+    "ranges in centimetres": set_units("cm", "cloud_unit"),
+    "all in millimetres": set_units("mm", "cloud_unit", "pose_unit"),
+    "ranges in millimetres": set_units("mm", "cloud_unit"),
 }
 """By the lies that raise them."""
 

@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+import open3d
 import shapely
 from PIL import Image
 from scipy.spatial.transform import Rotation
@@ -95,15 +96,151 @@ def sweep(pose, seed):
     return points[np.isfinite(points).all(axis=1)].astype(np.float32)
 
 
-def write_bag(folder):
-    """Write a drive through the flat as a bag, a scan a second; return the dataset's files."""
+def write_bag(folder, *, behind_ns=0):
+    """Write a drive through the flat as a bag, a scan a second; return the dataset's files.
+
+    The sensor's clock may be behind that of the poses. Messages are received some milliseconds
+    after they were stamped.
+    """
     maker = bag_making.Maker("ros1")
     entries = []
+    late_ns = np.random.default_rng(2).integers(5_000_000, 30_000_000, (len(way_poses()), 2))
     for i, pose in enumerate(way_poses()):
         t_ns = bag_making.START_NS + i * 10**9
-        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
-        entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
+        cloud = maker.cloud(t_ns - behind_ns, sweep(pose, i))
+        entries.append(("/amcl_pose", t_ns + late_ns[i, 0], maker.amcl(t_ns, pose[:3, 3])))
+        entries.append(("/points", t_ns + late_ns[i, 1], cloud))
     maker.write(folder / "run", entries)
+    return dataset_files.find_files(folder)
+
+
+def write_two_robots(folder):
+    """Write the drive of /robot1, beside another robot's of the same frames and topics' names.
+
+    The other goes the way back, and its sensor is mounted otherwise.
+    """
+    maker = bag_making.Maker("mcap")
+    entries = []
+    ways = {"/robot1": (way_poses(), 0.2), "/robot2": (way_poses()[::-1], 0.35)}
+    for robot, (poses, up_m) in ways.items():
+        mount = (bag_making.START_NS, "base_link", "lidar", (0, 0, up_m))
+        entries.append((f"{robot}/tf_static", bag_making.START_NS, maker.transforms(mount)))
+        for i, pose in enumerate(poses):
+            t_ns = bag_making.START_NS + i * 10**9
+            base = pose[:3, 3] - (0, 0, up_m)
+            moved = maker.transforms((t_ns, "map", "base_link", base))
+            entries.append((f"{robot}/tf", t_ns, moved))
+            entries.append((f"{robot}/points", t_ns, maker.cloud(t_ns, sweep(pose, i))))
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
+def shift(*xyz_m):
+    """Return a pose (4, 4) that is not turned."""
+    pose = np.eye(4)
+    pose[:3, 3] = xyz_m
+    return pose
+
+
+def mount_scanner(x_m, yaw_deg):
+    """Return a scanner's place (4, 4) on the robot, ahead of its middle and turned."""
+    mount = np.eye(4)
+    mount[:3, :3] = Rotation.from_euler("z", yaw_deg, degrees=True).as_matrix()
+    mount[0, 3] = x_m
+    return mount
+
+
+MIDDLE = {"scan": mount_scanner(0.0, 0.0)}
+FRONT_AND_REAR = {"front": mount_scanner(0.25, 0.0), "rear": mount_scanner(-0.2, 180.0)}
+
+
+def write_scanners(folder, mounts, *, planar=True, half_deg=90.0):
+    """Write a drive of a robot with scanners that see as far to both sides as given each."""
+    maker = bag_making.Maker("sqlite3")
+    entries = []
+    for i, (name, mount) in enumerate(mounts.items()):
+        (at_m,), (turn,) = se3.split_pose(mount[None])
+        mounting = (bag_making.START_NS, "base_link", name, at_m, turn)
+        entries.append(("/tf_static", bag_making.START_NS, maker.transforms(mounting)))
+        for row, pose in enumerate(way_poses()):
+            t_ns = bag_making.START_NS + row * 10**9
+            if i == 0:
+                entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
+            see_one = scan_plane if planar else sweep_part
+            scan = see_one(maker, t_ns, pose @ mount, half_deg, name, row + 100 * i)
+            entries.append((f"/{name}", t_ns, scan))
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
+def scan_plane(maker, t_ns, pose, half_deg, frame, seed):
+    """Return a LaserScan of beams every half degree, as far to both sides as given."""
+    angle = np.radians(np.arange(-half_deg, half_deg, 0.5))
+    beams = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
+    range_m = np.linalg.norm(see(pose, beams, seed), axis=1)
+    angles = {"angle_min": angle[0], "angle_max": angle[-1], "angle_increment": np.radians(0.5)}
+    return maker.laser(t_ns, np.nan_to_num(range_m, nan=np.inf), frame=frame, **angles)
+
+
+def sweep_part(maker, t_ns, pose, half_deg, frame, seed):
+    """Return a PointCloud2 of what 16 beams see, as far to both sides as given."""
+    points = sweep(pose, seed)
+    azimuth_deg = np.degrees(np.arctan2(points[:, 1], points[:, 0]))
+    return maker.cloud(t_ns, points[np.abs(azimuth_deg) <= half_deg], frame=frame)
+
+
+def write_nodding_laser(folder, n_sweeps=36):
+    """Write a drive of a robot whose laser nods once a second, from 50 degrees up to 50 down."""
+    maker = bag_making.Maker("mcap")
+    angle = np.radians(np.arange(0, 360, 1.5))
+    beams = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
+    angles = {"angle_max": angle[-1], "angle_increment": np.radians(1.5)}
+    base, tilt = np.eye(4), np.eye(4)
+    tilt[2, 3] = 0.1
+    laser_m = (0.03, 0, 0.02)
+    entries = []
+    for child, parent, place in (("laser", "tilt", laser_m), ("mount", "base_link", (0, 0, 0.3))):
+        still = maker.transforms((bag_making.START_NS, parent, child, place))
+        entries.append(("/tf_static", bag_making.START_NS, still))
+    way_m = way_poses()[:, :3, 3] - (0, 0, 0.4)
+    yaw_rad = 0.9 * np.sin(np.arange(len(way_m)) / 4)
+    for i, (at_m, yaw) in enumerate(zip(way_m, yaw_rad, strict=True)):
+        base[:3, :3] = Rotation.from_euler("z", yaw).as_matrix()
+        base[:3, 3] = at_m
+        quat = se3.split_pose(base[None])[1][0]
+        # it stands for a nod, and goes on while the mount turns back
+        for since_s in (0.0, 0.95):
+            t_ns = bag_making.START_NS + i * 10**9 + round(since_s * 1e9)
+            entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, at_m, quat)))
+        for row in range(n_sweeps):
+            t_ns = bag_making.START_NS + i * 10**9 + round(0.95e9 * row / n_sweeps)
+            share = row / (n_sweeps - 1)
+            pitch = np.radians(100) * ((share if i % 2 else 1 - share) - 0.5)
+            tilt[:3, :3] = Rotation.from_euler("y", pitch).as_matrix()
+            (place,), (turn,) = se3.split_pose(tilt[None])
+            moved = maker.transforms((t_ns, "mount", "tilt", place, turn))
+            pose = base @ shift(0, 0, 0.3) @ tilt @ shift(*laser_m)
+            range_m = np.linalg.norm(see(pose, beams, 100 * i + row), axis=1)
+            scan = maker.laser(t_ns, np.nan_to_num(range_m, nan=np.inf), **angles)
+            entries += [("/tf", t_ns, moved), ("/scan", t_ns, scan)]
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
+def write_scan_folder(folder, poses, clouds):
+    """Write clouds (n, 3), each in its sensor's frame, as PCD with poses (n, 4, 4) a second apart.
+
+    Open3D writes them.
+    """
+    (folder / "scans").mkdir(parents=True)
+    lines = []
+    for i, (pose, xyz_m) in enumerate(zip(poses, clouds, strict=True)):
+        points = xyz_m[np.isfinite(xyz_m).all(axis=1)].astype(np.float32)
+        cloud = open3d.t.geometry.PointCloud(np.ascontiguousarray(points))
+        open3d.t.io.write_point_cloud(str(folder / f"scans/{i}.pcd"), cloud)
+        (place,), (turn,) = se3.split_pose(pose[None])
+        lines.append(" ".join(map(str, [i + 1.0, *place.tolist(), *turn.tolist()])))
+    (folder / "poses.tum").write_text("\n".join(lines) + "\n")
     return dataset_files.find_files(folder)
 
 

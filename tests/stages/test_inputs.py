@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from helpers import e57_making, las_making, ptx_making, small_flat
+from helpers import bag_making, e57_making, las_making, ptx_making, small_flat
+from scanplan.errors import StageError
 from scanplan.project import dataset_files
 
 
@@ -22,6 +23,15 @@ def test_stations(tmp_path, bag_plan, name, write):
     small_flat.assert_same_plan(plan, bag_plan)
 
 
+@pytest.mark.parametrize("kind", ["found", "stations"])
+def test_stations_of_a_tripod_as_clouds_with_poses(tmp_path, bag_plan, kind):
+    files = small_flat.write_scan_folder(
+        tmp_path / "flat", small_flat.station_poses(), small_flat.station_points()
+    )
+    plan = small_flat.plan_of(tmp_path / "plan", files, pose_kind=kind)
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
 def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
     xyz_m, since_s = small_flat.map_points()
     order = np.random.default_rng(4).permutation(len(xyz_m))
@@ -35,6 +45,44 @@ def test_points_in_the_map_with_a_trajectory(tmp_path, bag_plan):
 
 def test_clouds_in_the_map(tmp_path, bag_plan):
     plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_lio(tmp_path))
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_clouds_by_the_uptime_of_their_sensor(tmp_path, bag_plan):
+    behind_ns = bag_making.START_NS - 734 * 10**9
+    plan = small_flat.plan_of(
+        tmp_path / "plan", small_flat.write_bag(tmp_path, behind_ns=behind_ns)
+    )
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_one_of_two_robots_by_its_own_namespace(tmp_path, bag_plan):
+    files = small_flat.write_two_robots(tmp_path)
+    with pytest.raises(StageError, match=r"/robot1/points.*/robot2/points.*input\.cloud_topic"):
+        small_flat.plan_of(tmp_path / "none", files)
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_topic="/robot1/points")
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+@pytest.fixture(scope="module")
+def laser_plan(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("laser")
+    files = small_flat.write_scanners(folder, small_flat.MIDDLE, half_deg=180)
+    return small_flat.plan_of(folder / "plan", files)
+
+
+@pytest.mark.parametrize(("planar", "half_deg"), [(True, 90), (False, 180)])
+def test_a_scanner_in_front_and_one_behind(tmp_path, bag_plan, laser_plan, planar, half_deg):
+    both = small_flat.FRONT_AND_REAR
+    files = small_flat.write_scanners(tmp_path, both, planar=planar, half_deg=half_deg)
+    with pytest.raises(StageError, match=r"/front.*/rear.*input\.cloud_topic.*as a list"):
+        small_flat.plan_of(tmp_path / "none", files)
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_topic=["/front", "/rear"])
+    small_flat.assert_same_plan(plan, laser_plan if planar else bag_plan)
+
+
+def test_a_laser_on_a_mount_that_nods(tmp_path, bag_plan):
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_nodding_laser(tmp_path))
     small_flat.assert_same_plan(plan, bag_plan)
 
 

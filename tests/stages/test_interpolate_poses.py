@@ -49,6 +49,16 @@ def test_every_fifth_scan_gets_its_pose(run, entries):
     np.testing.assert_allclose(poses["gap_s"], 0, atol=1e-9)  # each has a pose of its own stamp
 
 
+def test_all_turns_of_a_sensor_that_stands_still_are_candidates(run, caplog):
+    def still(t_ns, _):
+        return bag_making.Maker().amcl(t_ns, (3, 2, 0))
+
+    with caplog.at_level("INFO"):
+        poses = run(bag_making.survey(bag_making.Maker(), n_scans=18, pose_of=still))
+    assert poses["scan_id"].tolist() == list(range(18))
+    assert "each of its 18 turns is a candidate" in caplog.text
+
+
 def test_the_table_says_how_many_scans_were_recorded(run, entries, tmp_path):
     run(entries)
     path = tmp_path / "poses.parquet"
@@ -142,16 +152,18 @@ def test_how_the_sensor_moved_is_written_beside(run, entries, tmp_path):
 
 
 def test_poses_of_another_time_tell_both_spans(run, entries, tmp_path):
-    maker = bag_making.Maker()
+    maker, hour_ns = bag_making.Maker(), 3600 * 10**9
+    clouds = [entry for entry in entries if entry[0] == "/points"]
     late = [
-        (t, r, maker.amcl(r + 3600 * 10**9, (0, 0, 0)) if t == "/amcl_pose" else m)
-        for t, r, m in entries
+        (t, r + hour_ns, maker.amcl(r + hour_ns, (0, 0, 0)))
+        for t, r, _ in entries
+        if t == "/amcl_pose"
     ]
     with pytest.raises(
         StageError,
         match=r"clouds 1700000000.000 to 1700000001.100 s, poses 1700003599.950 to 17000036",
     ):
-        run(late)
+        run(clouds + late)
     assert not (tmp_path / "poses.parquet").exists()
 
 

@@ -16,7 +16,9 @@ FEW = (
     "map jumps by 3 m, 1 m and 5 degrees, no odometry",
     "quaternion w first",
     "sensor turned by 90 degrees",
+    "ranges in feet",
     "all in centimetres",
+    "all in millimetres",
 )
 
 

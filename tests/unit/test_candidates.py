@@ -44,6 +44,24 @@ def test_a_sensor_that_stands_still_is_told(xs, is_told):
     )
 
 
+@pytest.mark.parametrize(
+    ("xs", "keep_every", "expected"),
+    [
+        ([3.0] * 18, 5, 1),
+        ([3.0, 3.04] * 9, 5, 1),  # what localisers scatter by
+        ([3.0] * 18, 1, 1),
+        ([3.0] * 250, 5, 3),
+        ([3.0] * 2500, 5, 5),
+        ([3.0] * 17 + [3.1], 5, 5),
+        ([], 5, 5),
+    ],
+)
+def test_of_a_sensor_that_stands_all_turns_are_candidates_up_to_a_hundred(xs, keep_every, expected):
+    pose = np.concatenate([poses(xs), poses([np.nan])])
+    has_pose = np.array([True] * len(xs) + [False])
+    assert candidates.thin_less_standing(pose, has_pose, keep_every) == expected
+
+
 def test_scans_a_metre_apart_are_all_kept():
     chosen = candidates.choose_candidates(
         poses(np.arange(12.0)), keep_every=5, max_step_m=0.5, max_turn_deg=30

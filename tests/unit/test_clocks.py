@@ -48,6 +48,44 @@ def test_how_far_stamps_are_ahead(ahead_s, cloud_ahead_s, expected_s):
     assert found == round(expected_s * S)
 
 
+POSES = np.arange(0, 10 * S, S // 10)
+UPTIME = 734 * S
+
+
+def offset_of(cloud_t_ns, cloud_receive_ns, pose_receive_ns=POSES + S // 50, recording=None):
+    recording = np.zeros(len(cloud_t_ns), int) if recording is None else recording
+    return clocks.find_clock_offset(POSES, pose_receive_ns, cloud_t_ns, cloud_receive_ns, recording)
+
+
+def test_uptime_becomes_the_time_of_poses_by_when_both_were_received():
+    seen = np.arange(S, 9 * S, S)
+    late = S // 50 + np.array([0, 0, 0, 0, 1, -1, 2, -1]) * S // 1000
+    found = offset_of(seen + UPTIME, seen + late)
+    assert found.offset_ns.tolist() == [-UPTIME] * 8
+    assert abs(found.spread_ns - 1_300_000) < 1000  # at 6.3 of 7 between those of 1 and 2 ms
+
+
+def test_a_sensor_that_was_switched_on_anew_has_another_offset_in_each_recording():
+    seen = np.arange(S, 9 * S, S)
+    second = seen > 4 * S
+    found = offset_of(
+        np.where(second, seen - 4 * S, seen + UPTIME), seen + S // 50, recording=second.astype(int)
+    )
+    assert found.offset_ns.tolist() == [-UPTIME] * 4 + [4 * S] * 4
+    assert found.spread_ns == 0
+
+
+@pytest.mark.parametrize("late_s", [0, 2, 7, 3600])
+def test_poses_that_were_computed_later_keep_their_stamps(late_s):
+    seen = np.arange(0, 10 * S, S)
+    assert offset_of(seen, seen + S // 50, POSES + late_s * S) is None
+
+
+def test_where_receipt_is_the_stamp_there_is_no_offset():
+    seen = np.arange(S, 9 * S, S)
+    assert offset_of(seen + UPTIME, seen + UPTIME, POSES) is None
+
+
 def twice(*t_s):
     return clocks.find_repeated_times((np.array(t_s) * S).astype(np.int64)).tolist()
 

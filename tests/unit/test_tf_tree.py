@@ -151,6 +151,19 @@ def test_roots():
     assert tf_tree.FrameTree([moving("earth", "map"), moving("map", "b")]).world_root("b") == "map"
 
 
+def test_a_base_above_which_two_localisers_move_is_still_the_mounts():
+    placed = [moving(name, "base_link", x=x) for name, x in (("mocap", (0, 1)), ("slam", (5, 7)))]
+    tree = tf_tree.FrameTree([*placed, still("base_link", "laser")])
+    assert tree.mount_root("laser", "map") == "base_link"
+
+
+def test_a_mount_that_nods_is_of_the_robots_base():
+    tilting = moving("mount", "tilt", quat=NONE)
+    edges = [moving("odom", "base_link"), still("base_link", "mount"), tilting]
+    tree = tf_tree.FrameTree([*edges, still("tilt", "laser")])
+    assert tree.mount_root("laser", "map") == "base_link"
+
+
 def test_what_never_moves_is_mounted_but_a_standing_robot_is_not():
     tree = tf_tree.FrameTree(
         [moving("odom", "base_link", x=(2, 2)), moving("base_link", "lidar", x=(1, 1))]

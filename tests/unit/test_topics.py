@@ -73,6 +73,36 @@ def test_poses_in_doubt_or_missing():
         topics.choose_pose_topic([ODOM, CLOUD], "/points", "d")
 
 
+def named(topic, *names):
+    return [Topic(name, topic.msgtype, topic.count) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("cloud", "others", "kept"),
+    [
+        # alike in both, and all else below the other one
+        ("/robot1/points", ["/robot1/tf", "/robot2/tf", "/robot2/x/tf", "/tf"], [0, 3]),
+        ("/fleet/a/points", ["/fleet/a/tf", "/fleet/b/tf", "/fleet/tf"], [0, 2]),
+        ("/a/front/points", ["/a/tf", "/b/tf", "/b/rear/tf"], [0]),
+        # a namespace that has nothing in common is none of a robot
+        ("/velodyne/points", ["/localiser/tf", "/tf"], [0, 1]),
+        ("/points", ["/robot1/tf", "/robot2/tf"], [0, 1]),
+        # /robot and /robot1 are two
+        ("/robot/points", ["/robot/tf", "/robot1/tf"], [0]),
+    ],
+)
+def test_topics_of_other_robots_are_left_out(cloud, others, kept):
+    (own,) = named(CLOUD, cloud)
+    present = [own, *named(TF, *others)]
+    found = topics.leave_other_robots(present, own)
+    assert found == [own, *(present[1 + i] for i in kept)]
+
+
+def test_what_lies_beside_a_second_scanner_is_no_other_robots():
+    present = [*named(CLOUD, "/left/points", "/right/points"), *named(ODOM, "/right/odom")]
+    assert topics.leave_other_robots(present, present[0]) == present
+
+
 def test_merge_adds_up_and_refuses_two_types():
     assert topics.merge_topics([CLOUD, AMCL, CLOUD], "d") == [AMCL, Topic("/points", CLOUDS[0], 18)]
     with pytest.raises(StageError, match="/points"):

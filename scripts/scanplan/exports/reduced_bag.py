@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from scanplan.exports import bag_writer
-from scanplan.exports.selected_bag import copy_message, without_damage
+from scanplan.exports.selected_bag import copy_message, sections_of
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.recorded_survey import BagSurvey
 from scanplan.store import atomic
@@ -67,7 +67,7 @@ def reduced_settings(reading: Settings, poses: Settings) -> dict[str, Any]:
         Sections `input` and `poses` of the survey's own settings.
     """
     return {
-        "input": without_damage(reading),
+        **sections_of(reading),
         "poses": {**poses, "keep_every": 1},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
     }

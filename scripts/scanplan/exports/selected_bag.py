@@ -24,6 +24,8 @@ StampedStream = tuple[tuple[str, ...], int]
 """What a small message tells, as (topic,) or (topic, parent, child), and its stamp."""
 
 _OF_DAMAGED = ("salvage", "max_damaged_share")
+_TUNED = ("pose_kind", "cloud_unit", "pose_unit")
+"""Of how a recording is read what stands under `advanced` in settings."""
 
 
 def copy_selected_scans(
@@ -59,8 +61,10 @@ def copy_selected_scans(
         for bag, message, scan_id in _iterate_messages(survey, poses, needed):
             if scan_id is not None:
                 stamp_ns = int(stamps_ns[scan_id])
-                pose = _make_pose(stamp_ns, survey.map_frame, poses[scan_id])
-                writer.write_message(message[1], POSE_TOPIC, _POSE_TYPE, pose)
+                pose = _make_pose(stamp_ns, survey.map_frame, poses[scan_id], survey.units.pose_m)
+                # where receipt tells the clouds' clock it is to tell it again
+                received_ns = message[1] - survey.lag_ns
+                writer.write_message(received_ns, POSE_TOPIC, _POSE_TYPE, pose)
                 n_messages += 1
             copy_message(writer, bag, message)
             n_messages += 1
@@ -82,9 +86,9 @@ def reading_settings(survey: BagSurvey, reading: Settings) -> dict[str, Any]:
     """
     own_topics = {"cloud_topic": survey.list_topics().cloud.name, "pose_topic": POSE_TOPIC}
     # found anew: the poses that are written are registered ones
-    sound = {key: value for key, value in without_damage(reading).items() if key != "pose_kind"}
+    own = {key: value for key, value in reading.items() if key != "pose_kind"}
     return {
-        "input": sound | own_topics,
+        **sections_of(own | own_topics),
         "poses": {"keep_every": 1},
         "registration": {"icp_method": "none"},
         "selection": {"stop": {"n_scans": None, "area_share": None}},
@@ -184,20 +188,22 @@ def copy_message(writer: BagWriter, bag: Bag, message: BagMessage) -> None:
     writer.write_raw(receive_ns, topic.name, topic.msgtype, data, is_latched=is_latched)
 
 
-def _make_pose(stamp_ns: int, frame: str, map_from_base: FloatArray) -> Any:
-    """Return a `geometry_msgs/PoseStamped`."""
+def _make_pose(stamp_ns: int, frame: str, map_from_base: FloatArray, unit_m: float) -> Any:
+    """Return a `geometry_msgs/PoseStamped` in some unit."""
     kinds = ROS1_STORE.types
     xyz_m, quat_xyzw = se3.split_pose(map_from_base[None])
     stamp = kinds["builtin_interfaces/msg/Time"](sec=stamp_ns // 10**9, nanosec=stamp_ns % 10**9)
     return kinds[_POSE_TYPE](
         header=kinds["std_msgs/msg/Header"](seq=0, stamp=stamp, frame_id=frame),
         pose=kinds["geometry_msgs/msg/Pose"](
-            position=kinds["geometry_msgs/msg/Point"](*xyz_m[0].tolist()),
+            position=kinds["geometry_msgs/msg/Point"](*(xyz_m[0] / unit_m).tolist()),
             orientation=kinds["geometry_msgs/msg/Quaternion"](*quat_xyzw[0].tolist()),
         ),
     )
 
 
-def without_damage(reading: Settings) -> dict[str, Any]:
-    """Return how to read without what is for damaged recordings: what is written anew is whole."""
-    return {key: value for key, value in reading.items() if key not in _OF_DAMAGED}
+def sections_of(reading: Settings) -> dict[str, Any]:
+    """Return sections of settings that say how to read a recording that is written anew, whole."""
+    sound = {key: value for key, value in reading.items() if key not in _OF_DAMAGED}
+    tuned = {key: sound.pop(key) for key in _TUNED if key in sound}
+    return {"input": sound, "advanced": {"input": tuned}}

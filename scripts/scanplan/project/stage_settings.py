@@ -35,7 +35,7 @@ _THESIS = {
     "thesis_cluster_ransac": (*_THESIS_RANSAC, "reach_deg", "bandwidth_m", "projection"),
 }
 """What the thesis's extractors go by: no gap, furniture or height."""
-_POINTS_ONLY = ("min_range_m", "max_range_m", "deskew")
+_POINTS_ONLY = ("min_range_m", "max_range_m", "deskew", "max_damaged_share")
 _ASSUMED = ("assumed_thickness_m", "assumed_height_m")
 _OF_FILES = ("formats", "author", "organisation", "site", "cloud")
 """What the drawings do not depend on."""
@@ -76,8 +76,7 @@ def select_section(settings: Settings, *keys: str) -> Any:
 
 def select_topics(settings: Settings) -> Keywords:
     """Return what poses depend on of the input: all but what is done to the points."""
-    poses = {"pose_kind": settings[ADVANCED]["input"]["pose_kind"]}
-    return _without(settings["input"], _POINTS_ONLY) | poses
+    return _without(select_section(settings, "input"), _POINTS_ONLY)
 
 
 def select_crispness(settings: Settings) -> Keywords:

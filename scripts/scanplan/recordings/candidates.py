@@ -15,6 +15,8 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
 _FEWEST_TO_STAND = 10  # a second of most sensors
+_STOOD_M = 0.05  # what poses of a sensor that stands scatter by, and 0.05 rad of a turn
+_MOST_OF_A_SPOT = 100  # scans: ten seconds of most sensors; more differ by noise alone
 
 
 def choose_candidates(
@@ -69,6 +71,26 @@ def choose_candidates(
             is_due = False
             last = i if has_pose[i] else last
     return np.array(chosen, np.int64)
+
+
+def thin_less_standing(world_from_sensor: FloatArray, has_pose: BoolArray, keep_every: int) -> int:
+    """Return every how many-th scan is a candidate: of a sensor that never moved each, up to 100.
+
+    Parameters
+    ----------
+    world_from_sensor : (n, 4, 4) float
+    has_pose : (n,) bool
+    keep_every : int
+        Of a sensor that moves.
+    """
+    poses = np.asarray(world_from_sensor, float)[has_pose]
+    if len(poses) == 0 or np.ptp(poses, axis=0).max() > _STOOD_M:
+        return keep_every
+    fewer = min(keep_every, int(np.ceil(len(poses) / _MOST_OF_A_SPOT)))
+    if fewer < keep_every:
+        taken = "each" if fewer == 1 else f"one in {fewer}"
+        log.log_line(f"the sensor stood still: {taken} of its {len(poses):,} turns is a candidate")
+    return fewer
 
 
 def measure_standing(world_from_sensor: FloatArray, has_pose: BoolArray) -> Measured:
@@ -154,8 +176,20 @@ def require_poses(
     if not covered[chosen].any():
         raise StageError(
             f"{where}: no scan has poses within {max_gap_s} s around it: clouds"
-            f" {_format_span(t_ns)}, poses {', '.join(spans)}; check the clocks or raise max_gap_s"
+            f" {_format_span(t_ns)}, poses {', '.join(spans)}; {_advise(t_ns, edges)}"
         )
+
+
+def _advise(t_ns: IntArray, edges: Sequence[FrameEdge]) -> str:
+    """Return what helps where no scan has a pose: beyond the poses no gap is bridged."""
+    tracks_ns = [edge.t_ns for edge in edges if edge.t_ns is not None]
+    if any((t_ns.max() < track[0]) or (t_ns.min() > track[-1]) for track in tracks_ns):
+        return (
+            "they are of different times, or of clocks that differ by what no time of receipt"
+            " tells: stamp both by one clock (of Ouster's driver: timestamp_mode"
+            " TIME_FROM_ROS_TIME)"
+        )
+    return "raise poses.max_gap_s"
 
 
 def _format_span(t_ns: IntArray) -> str:

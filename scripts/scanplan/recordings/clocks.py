@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,6 +15,7 @@ and a rover drives a metre in it."""
 
 _AHEAD_S = 0.02  # below it a lead is jitter of the receipt
 _MOST_AHEAD_S = 5.0  # no localiser stamps so far ahead: beyond it two clocks differ
+_MOST_SCATTER = 0.9  # of times of receipt: the others are of a recorder that was busy
 _FEWEST_BACK = 3  # fewer messages are late ones, not a clock set back
 
 
@@ -128,6 +130,77 @@ def estimate_ahead_ns(
 def describe_lead(name: str, ahead_ns: int) -> str:
     """Return a line that says by how much stamps of a source were taken back."""
     return f"{name} is stamped {ahead_ns / 1e9:.3f} s ahead of its receipt: taken back"
+
+
+class ClockOffset(NamedTuple):
+    """What stamps of clouds lack of another clock.
+
+    Attributes
+    ----------
+    offset_ns : (n,) int64
+        To be added to the stamp of each.
+    spread_ns : int
+        How far nine tenths of the times of receipt lie from it, one way or the other.
+    """
+
+    offset_ns: IntArray
+    spread_ns: int
+
+
+def find_clock_offset(
+    t_ns: IntArray,
+    receive_ns: IntArray,
+    cloud_t_ns: IntArray,
+    cloud_receive_ns: IntArray,
+    recording: IntArray,
+) -> ClockOffset | None:
+    """Find what clouds' stamps lack of the clock of poses, by when both were received.
+
+    Asked where the delays of both differ by more than those of one clock do, and more clouds were
+    received among poses than are stamped among them: poses may be computed, and recorded, long
+    after their clouds.
+
+    Parameters
+    ----------
+    t_ns, receive_ns : (n,) int64, n >= 1
+        Of the poses.
+    cloud_t_ns, cloud_receive_ns : (m,) int64, m >= 1
+        Of the clouds.
+    recording : (m,) int
+        In which recording each cloud is: between two of them the sensor may have been switched on
+        anew.
+
+    Returns
+    -------
+    ClockOffset or None
+        None where they are stamped by one clock, or no time of receipt tells otherwise.
+    """
+    delay_ns, scatter_ns = _measure_delay(receive_ns - t_ns)
+    offset_ns = np.empty(len(cloud_t_ns), np.int64)
+    cloud_scatter_ns = np.empty(len(cloud_t_ns), np.int64)
+    for part in np.unique(recording):
+        rows = recording == part
+        cloud_delay_ns, cloud_scatter_ns[rows] = _measure_delay(
+            (cloud_receive_ns - cloud_t_ns)[rows]
+        )
+        offset_ns[rows] = cloud_delay_ns - delay_ns
+    if np.abs(offset_ns).max() <= _MOST_AHEAD_S * 1e9:
+        return None
+    if _count_within(cloud_receive_ns, receive_ns) <= _count_within(cloud_t_ns, t_ns):
+        return None
+    spread_ns = sum(np.quantile(each, _MOST_SCATTER) for each in (scatter_ns, cloud_scatter_ns))
+    return ClockOffset(offset_ns, int(spread_ns))
+
+
+def _measure_delay(delays_ns: IntArray) -> tuple[int, IntArray]:
+    """Return the median of delays (n,), and how far each lies from it."""
+    # float64 has 200 ns of what is counted since the epoch
+    median_ns = int(delays_ns[0]) + round(float(np.median(delays_ns - delays_ns[0])))
+    return median_ns, np.abs(delays_ns - median_ns)
+
+
+def _count_within(cloud_t_ns: IntArray, t_ns: IntArray) -> int:
+    return int(((cloud_t_ns >= t_ns.min()) & (cloud_t_ns <= t_ns.max())).sum())
 
 
 def find_repeated_times(t_ns: IntArray) -> BoolArray:

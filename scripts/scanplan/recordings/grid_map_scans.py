@@ -19,6 +19,7 @@ from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import PosedScans
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _BEAMS = 720  # half a degree: a cell of 5 cm at 6 m
@@ -47,6 +48,7 @@ class GridMapScans(PosedScans):
     ----------
     files : sequence of str
         The map's .yaml and its image.
+    units : units.Units, optional
     **reading
         Keywords of `posed_scans.PosedScans`; by default the poses are exact.
 
@@ -56,8 +58,13 @@ class GridMapScans(PosedScans):
         If they are no map, or show too little free floor.
     """
 
-    def __init__(self, files: Sequence[str], **reading: Any) -> None:
+    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
         path = next(Path(file) for file in files if file.endswith((".yaml", ".yml")))
+        if units != IN_METRES:
+            raise StageError(
+                f"{path}: a grid map states its resolution in metres; leave out"
+                " advanced.input.cloud_unit and advanced.input.pose_unit"
+            )
         self._grid = _read_grid(path)
         cells = _choose_places(self._grid)
         if len(cells) < _LEAST_PLACES:

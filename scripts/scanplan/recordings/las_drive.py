@@ -12,6 +12,7 @@ from scanplan.recordings import frame_edges, map_origin, trajectory_file
 from scanplan.recordings.las_points import LasBlock, list_blocks
 from scanplan.recordings.motion.pose_kind import LOCALISER
 from scanplan.recordings.posed_scans import UntimedScans
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -51,6 +52,7 @@ class LasDrive(UntimedScans):
     ----------
     files : sequence of str
         The clouds, and the trajectory.
+    units : units.Units, optional
     **reading
         Keywords of `posed_scans.PosedScans`; by default the poses are a localiser's.
 
@@ -60,11 +62,13 @@ class LasDrive(UntimedScans):
         If a file is damaged, its points have no time, or the trajectory is of another time.
     """
 
-    def __init__(self, files: Sequence[str], **reading: Any) -> None:
+    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
+        self._unit_m = units.cloud_m
         paths = [Path(file) for file in files]
         path = next(filter(dataset_entries.is_trajectory, paths))
         clouds = [file for file in paths if not dataset_entries.is_trajectory(file)]
         time_s, xyz_m = trajectory_file.read_trajectory(path)
+        xyz_m = units.pose_m * xyz_m
         xyz_m = xyz_m - (origin_m := map_origin.find_origin(str(path), xyz_m))
         blocks = [block for cloud in clouds for block in list_blocks(cloud)]
         self._slicing = _find_clock(blocks, time_s, path)
@@ -111,7 +115,7 @@ class LasDrive(UntimedScans):
             rows = rows[owner[rows] >= 0]
             found, begins = np.unique(owner[rows], return_index=True)
             for one, of_one in zip(found.tolist(), np.split(rows, begins[1:]), strict=True):
-                seen_m = points.xyz_m[of_one] - self._places_m[one]
+                seen_m = self._unit_m * points.xyz_m[of_one] - self._places_m[one]
                 parts[one].append(seen_m.astype(np.float32))
         return {one: np.concatenate(part) for one, part in parts.items()}
 

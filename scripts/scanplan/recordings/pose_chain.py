@@ -13,7 +13,6 @@ from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import IntArray
 
-_BASE_FRAMES = ("base_link", "base_footprint")
 _ODOM = "odom"
 
 
@@ -66,7 +65,6 @@ class PoseChains:
         if source.msgtype in topics.TRANSFORMS:
             return self._chain_of_transforms()
         edges = self._chain_of_track(source)
-        self._compare_clocks(self._index.poses[source.name])
         hint = better_poses_hint(self._tree, source, edges[0].parent)
         if hint:
             log.log_line(hint)
@@ -124,7 +122,7 @@ class PoseChains:
         """Return the frame of tf that the sensor hangs on, and the edges from there."""
         if self._extrinsics is None:
             return self._index.sensor_frame, []
-        bases = [frame for frame in _BASE_FRAMES if frame in self._tree.frames]
+        bases = [frame for frame in tf_tree.BASE_FRAMES if frame in self._tree.frames]
         return self._base_frame or (bases[0] if bases else None), self._extrinsics
 
     def _chain_of_track(self, source: topics.Topic) -> list[frame_edges.FrameEdge]:
@@ -201,19 +199,6 @@ class PoseChains:
             )
         return [*path, *extrinsics]
 
-    def _compare_clocks(self, poses: Sequence[PoseSample]) -> None:
-        """Clouds and poses stamped by different clocks give wrong poses that look right."""
-        t_ns, receive_ns = _stamps_of(poses)
-        if not t_ns.any():
-            return
-        poses_s = _median_delay_s(t_ns, receive_ns)
-        clouds_s = _median_delay_s(self._index.stamps_ns, self._index.cloud_receive_ns)
-        if abs(poses_s - clouds_s) > clocks.OF_ANOTHER_CLOCK_S:
-            log.log_line(
-                f"{self._where}: poses arrive {poses_s:.3f} s after their stamps, clouds"
-                f" {clouds_s:.3f} s: their clocks may differ"
-            )
-
 
 def _is_moving(edges: Sequence[frame_edges.FrameEdge]) -> bool:
     return any(edge.t_ns is not None for edge in edges)
@@ -224,7 +209,3 @@ def _stamps_of(samples: Sequence[PoseSample]) -> tuple[IntArray, IntArray]:
     t_ns = [sample.t_ns for sample in samples]
     receive_ns = [sample.receive_ns for sample in samples]
     return np.array(t_ns, np.int64), np.array(receive_ns, np.int64)
-
-
-def _median_delay_s(t_ns: IntArray, receive_ns: IntArray) -> float:
-    return float(np.median((receive_ns - t_ns) / 1e9))

@@ -11,7 +11,7 @@ from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import lidar_odometry, point_times
 from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND
-from scanplan.recordings.survey_protocol import NamedChain
+from scanplan.recordings.survey_protocol import NamedChain, TakenAtOnce
 from scanplan.types import Array, FloatArray, IntArray
 
 
@@ -167,15 +167,5 @@ class PosedScans(ABC):
         )
 
 
-class UntimedScans(PosedScans):
+class UntimedScans(TakenAtOnce, PosedScans):
     """Scans in space, of a sensor that stood still or with points that are free of its motion."""
-
-    @property
-    def planar(self) -> bool:
-        """Whether they were measured in one plane: never."""
-        return False
-
-    @property
-    def sweep_times(self) -> point_times.TimeConvention | None:
-        """No times: there is no motion to take out."""
-        return None

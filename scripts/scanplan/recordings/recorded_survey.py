@@ -1,6 +1,7 @@
 """One survey recorded in ROS bags: its clouds, and the chains that place its sensor."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import NamedTuple
 
@@ -9,6 +10,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.recordings import (
     clocks,
+    cloud_clock,
     clouds,
     driver_messages,
     frame_edges,
@@ -25,6 +27,7 @@ from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import lidar_odometry, point_times
 from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -91,6 +94,7 @@ class BagSurvey:
         base_from_sensor: Sequence[float] | None,
         min_range_m: float,
         max_range_m: float,
+        units: Units = IN_METRES,
         max_damaged_share: float = 0.0,
         pose_kind: str = FOUND,
     ) -> None:
@@ -100,6 +104,10 @@ class BagSurvey:
             (topic for bag in self._bags for topic in bag.topics), self._where
         )
         self._cloud = topics.choose_cloud_topic(self._topics, cloud_topic, self._where)
+        self._own_topics = topics.leave_other_robots(self._topics, self._cloud)
+        if others := [t.name for t in self._topics if t not in self._own_topics]:
+            log.log_line(f"{self._where}: of another robot, left out: {', '.join(others)}")
+        self.units = units
         self._pose_topic = pose_topic
         self._wanted_pose_kind = pose_kind
         self._base_frame = base_frame
@@ -128,12 +136,15 @@ class BagSurvey:
 
     @cached_property
     def _sweep_times(self) -> point_times.TimeConvention | None:
-        is_laser = self._cloud.msgtype in topics.LASERS
         return point_times.find_sweep_times(
             ((self._times_in_range(scan), scan.t_ns) for scan in self._first),
             str(self._cloud),
-            units=("s",) if is_laser else point_times.UNITS,
+            units=self._time_units,
         )
+
+    @property
+    def _time_units(self) -> Sequence[str]:
+        return ("s",) if self._cloud.msgtype in topics.LASERS else point_times.UNITS
 
     def _times_in_range(self, scan: _RawScan) -> Array | None:
         # points in the map are free of the sensor's motion
@@ -167,13 +178,39 @@ class BagSurvey:
 
     def list_topics(self) -> SurveyTopics:
         """Return the topics of the clouds, and of poses, transforms and odometry."""
-        transforms = [t for t in self._topics if t.msgtype in topics.TRANSFORMS]
+        transforms = [t for t in self._own_topics if t.msgtype in topics.TRANSFORMS]
         small = {t.name: t for t in (*self._pose_sources, *transforms, *self._odometry)}
         return SurveyTopics(self._cloud, list(small.values()))
 
     def stamps(self) -> IntArray:
-        """Return the header stamps of all clouds, (n,) int64, in scan_id order."""
-        return self._index.stamps_ns
+        """Return the stamps of all clouds, (n,) int64, in scan_id order, by the poses' clock."""
+        return self._aligned.stamps_ns
+
+    @property
+    def lag_ns(self) -> int:
+        """How long before its receipt a cloud's stamp is, as far as its clock was told by that."""
+        return self._aligned.sweep_ns
+
+    @cached_property
+    def _aligned(self) -> cloud_clock.AlignedStamps:
+        if self._pose_source is None:
+            return cloud_clock.AlignedStamps(self._index.stamps_ns)
+        return cloud_clock.align_stamps(
+            self._index,
+            self._pose_source,
+            self._cloud,
+            [bag.start_ns for bag in self._bags],
+            self._measure_sweep_ns,
+        )
+
+    def _measure_sweep_ns(self) -> int:
+        """Return how long after its stamp a cloud's last point is measured; 0 if it is not."""
+        timed = [(scan.time_raw, scan.t_ns) for scan in self._first if scan.time_raw is not None]
+        convention = point_times.find_time_convention(timed, self._time_units)
+        if convention is None:
+            return 0
+        last_s = [np.nanmax(convention.seconds(time_raw, t_ns)) for time_raw, t_ns in timed]
+        return max(0, int(np.median(last_s) * 1e9))
 
     def scans(
         self, wanted: Iterable[int], damaged: DamagedClouds | None = None
@@ -210,8 +247,11 @@ class BagSurvey:
 
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
-        losses = filter(None, (bag.describe_loss() for bag in self._bags))
-        return [*losses, *self._damaged.describe()]
+        return [*self.describe_losses(), *self._damaged.describe()]
+
+    def describe_losses(self) -> list[str]:
+        """Return what of the recordings is lost whatever was read, in sentences."""
+        return [loss for loss in (bag.describe_loss() for bag in self._bags) if loss]
 
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
@@ -267,7 +307,8 @@ class BagSurvey:
         """The topic of the poses; None where they are estimated from the clouds."""
         if self._wanted_pose_kind == ESTIMATED:
             return None
-        return topics.choose_pose_topic(self._topics, self._pose_topic, self._where)
+        known = self._topics if self._pose_topic else self._own_topics
+        return topics.choose_pose_topic(known, self._pose_topic, self._where)
 
     @property
     def _pose_sources(self) -> list[topics.Topic]:
@@ -278,7 +319,7 @@ class BagSurvey:
         """Topics of odometry besides the one that the poses are from; the most frequent first."""
         odometry = [
             topic
-            for topic in self._topics
+            for topic in self._own_topics
             if topic.msgtype == topics.ODOMETRY and topic.count and topic != self._pose_source
         ]
         return sorted(odometry, key=lambda topic: (-topic.count, topic.name))
@@ -290,11 +331,11 @@ class BagSurvey:
         if self._extrinsics is None or of_transforms:
             needed += [
                 topic
-                for topic in self._topics
+                for topic in self._own_topics
                 if topic.msgtype in topics.TRANSFORMS and topic != self._pose_source
             ]
         return small_messages.read_small_messages(
-            self._bags, self._cloud, needed, self._odometry, self._where
+            self._bags, self._cloud, needed, self._odometry, self._where, self.units.pose_m
         )
 
     @cached_property
@@ -315,7 +356,7 @@ class BagSurvey:
                 scan = self._decode(cloud)
             except StageError:
                 continue
-            if len(self._keep_in_range(scan).xyz_m):
+            if clouds.is_in_range(scan.xyz_m, **self._limits).any():
                 scans.append(scan)
             if len(scans) == clouds.SCANS_TO_JUDGE:
                 break
@@ -340,15 +381,17 @@ class BagSurvey:
                 n_seen += 1
 
     def _read_scan(self, cloud: _CloudMessage) -> clouds.Scan:
-        return self._keep_in_range(self._decode(cloud), self.sweep_times)
+        scan = self._keep_in_range(self._decode(cloud), self.sweep_times)
+        return replace(scan, t_ns=int(self.stamps()[cloud.scan_id]))
 
     def _decode(self, cloud: _CloudMessage) -> _RawScan:
         bag = cloud.bag
         connection, _, raw = cloud.message
-        t_ns = bag.header(connection, raw)[0] or self.stamps()[cloud.scan_id]
+        t_ns = bag.header(connection, raw)[0] or self._index.stamps_ns[cloud.scan_id]
         message = bag.decode(connection, raw)
         try:
-            return _RawScan(cloud.scan_id, t_ns, *_READERS[connection.msgtype](message))
+            xyz, time_raw = _READERS[connection.msgtype](message)
+            return _RawScan(cloud.scan_id, t_ns, self.units.cloud_m * xyz, time_raw)
         except StageError as error:
             raise StageError(
                 f"{bag.path}: topic {connection.topic}, scan {cloud.scan_id} at"

@@ -17,6 +17,7 @@ from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion.pose_kind import ESTIMATED, LOCALISER
 from scanplan.recordings.posed_scans import PosedScans
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.store import tum
 from scanplan.types import Array, FloatArray, IntArray
@@ -36,6 +37,7 @@ class ScanFolder(PosedScans):
     ----------
     files : sequence of str
         The clouds and poses.tum.
+    units : units.Units, optional
     **reading
         Keywords of `posed_scans.PosedScans`; by default the poses are a localiser's.
 
@@ -45,10 +47,12 @@ class ScanFolder(PosedScans):
         If the poses are damaged or do not fit the files.
     """
 
-    def __init__(self, files: Sequence[str], **reading: Any) -> None:
+    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
+        self._unit_m = units.cloud_m
         paths = [Path(file) for file in files]
         poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
         pose_ns, rows = tum.read_tum(poses_path)
+        rows[:, :3] *= units.pose_m
         track = _make_track(poses_path, pose_ns, rows)
         self._clouds, stamps_ns = _order_clouds(
             [path for path in paths if path != poses_path], pose_ns, poses_path
@@ -57,7 +61,7 @@ class ScanFolder(PosedScans):
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""
-        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
+        xyz_m, time_raw = _read_cloud(self._clouds[scan_id], self._unit_m)
         if not self._is_in_map:
             return xyz_m, time_raw
         # points in the map are free of the sensor's motion
@@ -71,7 +75,9 @@ class ScanFolder(PosedScans):
         def read(rows: IntArray) -> Iterator[FloatArray]:
             for row in rows.tolist():
                 path = self._clouds[row]
-                yield registered_clouds.read_finite(lambda path=path: _read_cloud(path)[0])
+                yield registered_clouds.read_finite(
+                    lambda path=path: _read_cloud(path, self._unit_m)[0]
+                )
 
         return registered_clouds.are_in_map(self._world_from_sensor, read, self.where)
 
@@ -122,7 +128,7 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
 
 
-def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
+def _read_cloud(path: Path, unit_m: float) -> tuple[FloatArray, Array | None]:
     """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
     n_stated = (check_ply_size if path.suffix.lower() == ".ply" else check_pcd_size)(path)
     fields = _read_fields(path)
@@ -133,7 +139,7 @@ def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
         )
     times = [fields[name].reshape(-1) for name in TIME_FIELDS if name in fields]
     with np.errstate(over="ignore"):
-        return xyz_m.astype(np.float32), times[0] if times else None
+        return unit_m * xyz_m.astype(np.float32), times[0] if times else None
 
 
 def _read_fields(path: Path) -> dict[str, Array]:

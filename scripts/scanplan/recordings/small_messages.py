@@ -42,7 +42,11 @@ TransformKey = tuple[bool, str, str]
 
 
 class SmallMessages:
-    """What one pass over the recordings collects.
+    """What one pass over the recordings collects; places are recorded in some unit.
+
+    Parameters
+    ----------
+    unit_m : float
 
     Attributes
     ----------
@@ -58,7 +62,8 @@ class SmallMessages:
     cloud_receive_ns: IntArray
     sensor_frame: str
 
-    def __init__(self) -> None:
+    def __init__(self, unit_m: float = 1.0) -> None:
+        self._unit_m = unit_m
         self.poses: dict[str, list[PoseSample]] = {}
         self.transforms: dict[TransformKey, list[TransformSample]] = {}
         self._clouds: list[_CloudSample] = []
@@ -75,7 +80,7 @@ class SmallMessages:
         sample = PoseSample(
             messages.stamp_to_ns(message.header.stamp),
             receive_ns,
-            messages.pose_to_row(pose),
+            self._read_row(pose),
             messages.clean_frame_name(message.header.frame_id),
             messages.clean_frame_name(getattr(message, "child_frame_id", "")),
         )
@@ -90,7 +95,7 @@ class SmallMessages:
         for item in message.poses:
             t_ns = messages.stamp_to_ns(item.header.stamp)
             # when a pose was first received is not known
-            known[t_ns] = PoseSample(t_ns, t_ns, messages.pose_to_row(item.pose), parent, "")
+            known[t_ns] = PoseSample(t_ns, t_ns, self._read_row(item.pose), parent, "")
         self.poses[topic] = [known[t_ns] for t_ns in sorted(known) if t_ns]
 
     def add_transforms(self, message: Any, receive_ns: int, static: bool) -> None:
@@ -99,8 +104,12 @@ class SmallMessages:
             parent = messages.clean_frame_name(item.header.frame_id)
             child = messages.clean_frame_name(item.child_frame_id)
             t_ns = messages.stamp_to_ns(item.header.stamp)
-            sample = TransformSample(t_ns, receive_ns, messages.pose_to_row(item.transform))
+            sample = TransformSample(t_ns, receive_ns, self._read_row(item.transform))
             self.transforms.setdefault((static, parent, child), []).append(sample)
+
+    def _read_row(self, pose: Any) -> list[float]:
+        row = messages.pose_to_row(pose)
+        return [*(self._unit_m * value for value in row[:3]), *row[3:]]
 
     def finish(self, where: str, cloud: topics.Topic) -> None:
         """Make arrays of the clouds' stamps, and log what is odd.
@@ -148,6 +157,7 @@ def read_small_messages(
     needed: Sequence[topics.Topic],
     optional: Sequence[topics.Topic],
     where: str,
+    unit_m: float = 1.0,
 ) -> SmallMessages:
     """Collect all small messages, in one pass: compressed recordings are unpacked once for it.
 
@@ -159,6 +169,8 @@ def read_small_messages(
         Poses that are left out where a message of them is damaged.
     where : str
         The dataset, for errors.
+    unit_m : float
+        What poses and transforms are in.
 
     Returns
     -------
@@ -170,7 +182,7 @@ def read_small_messages(
         If a message that is needed is damaged, there are no clouds, or they come from several
         sensors.
     """
-    index = SmallMessages()
+    index = SmallMessages(unit_m)
     wanted = {topic.name: topic for topic in (cloud, *needed, *optional)}
     damaged: set[topics.Topic] = set()
     items = ((bag, message) for bag in bags for message in bag.messages(wanted))

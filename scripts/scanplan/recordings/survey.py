@@ -11,19 +11,23 @@ from scanplan.recordings.motion.deskew import DeskewedSurvey
 from scanplan.recordings.motion.pose_kind import FOUND
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
+from scanplan.recordings.units import Units
+from scanplan.stage import log
 
 
 @contextmanager
 def open_survey(
     files: Sequence[str],
     *,
-    cloud_topic: str | None = None,
+    cloud_topic: str | Sequence[str] | None = None,
     pose_topic: str | None = None,
     base_frame: str | None = None,
     base_from_sensor: Sequence[float] | None = None,
     ros2_release: str = "humble",
     min_range_m: float = 0.0,
     max_range_m: float = math.inf,
+    cloud_unit: str = "m",
+    pose_unit: str = "m",
     max_damaged_share: float = 0.0,
     salvage: bool = False,
     deskew: bool = True,
@@ -37,7 +41,8 @@ def open_survey(
     files : sequence of str
         As `dataset_files.find_files` gives them.
     cloud_topic, pose_topic : str, optional
-        Where there are several candidates. `pose_topic` may be /tf.
+        Where there are several candidates. `cloud_topic` may be several, of the scanners of one
+        robot; `pose_topic` may be /tf.
     base_frame : str, optional
         The frame that the poses are of.
     base_from_sensor : (6,) float, optional
@@ -47,6 +52,8 @@ def open_survey(
         Whose message definitions hold where a ROS 2 bag carries none.
     min_range_m, max_range_m : float
         Points outside are dropped.
+    cloud_unit, pose_unit : str
+        What points, and poses and transforms, are recorded in: of `units.METRES`.
     max_damaged_share : float
         So many of the scans that are read may be damaged; they come without points.
     salvage : bool
@@ -73,13 +80,16 @@ def open_survey(
         "pose_topic": pose_topic,
         "base_frame": base_frame,
     }
-    common = {
+    common: dict[str, Any] = {
         "base_from_sensor": base_from_sensor,
         "min_range_m": min_range_m,
         "max_range_m": max_range_m,
+        "units": Units(cloud_unit, pose_unit),
         "max_damaged_share": max_damaged_share,
         "pose_kind": pose_kind,
     }
+    if scaled := common["units"].describe():
+        log.log_line(scaled)
     opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
         survey = _open_recordings(files, stack, opening, topics_and_frame, common)
@@ -90,7 +100,7 @@ def _open_recordings(
     files: Sequence[str],
     stack: ExitStack,
     opening: Mapping[str, Any],
-    topics_and_frame: Mapping[str, str | None],
+    topics_and_frame: Mapping[str, Any],
     common: Mapping[str, Any],
 ) -> Survey:
     # rosbags and Open3D cost a second each to import: only the one that is needed
@@ -123,4 +133,17 @@ def _open_recordings(
         stack.enter_context(bags.open_bag(path, **opening))
         for path in dataset_files.group_recordings(files)
     ]
-    return recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+    names = topics_and_frame["cloud_topic"]
+    if names is None or isinstance(names, str):
+        from scanplan.recordings import nodding_sweeps
+
+        survey = recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+        return nodding_sweeps.take_nods(survey)
+    from scanplan.recordings import scanner_drives
+
+    surveys = [
+        recorded_survey.BagSurvey(opened, **{**topics_and_frame, "cloud_topic": name}, **common)
+        for name in names
+    ]
+    share = common["max_damaged_share"]
+    return scanner_drives.ScannerDrives(surveys, max_damaged_share=share)

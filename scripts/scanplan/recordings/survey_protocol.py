@@ -13,6 +13,20 @@ NamedChain = tuple[str, list[FrameEdge]]
 """A chain of transforms from some fixed frame to the sensor, and the name of its source."""
 
 
+class TakenAtOnce:
+    """What surveys have in common whose scans are in space, and free of any motion."""
+
+    @property
+    def planar(self) -> bool:
+        """Whether they were measured in one plane: never."""
+        return False
+
+    @property
+    def sweep_times(self) -> TimeConvention | None:
+        """No times: there is no motion to take out."""
+        return None
+
+
 class Survey(Protocol):
     """Clouds with stamps, and the poses of their sensor."""
 

@@ -1,6 +1,7 @@
 """The tf tree: which frames hang on which, and the way from one to another."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.types import FloatArray
 
 WORLD_FRAMES = ("map", "odom", "world", "earth")
+BASE_FRAMES = ("base_link", "base_footprint")
+"""What robots call what their sensors are mounted on (REP 105)."""
 
 
 class _TwoParentsError(StageError):
@@ -151,15 +154,25 @@ class FrameTree:
     def mount_root(self, frame: str, world: str) -> str:
         """Return the topmost frame that is rigidly connected to `frame`, below those of the world.
 
+        A mount that nods or turns on a robot is of its base, whatever is between.
+
         Parameters
         ----------
         world : str
             The frame that the poses are given in; the climb stops below it too.
         """
 
-        def is_rigid(edge: FrameEdge) -> bool:
-            return edge.t_ns is None and edge.parent not in (world, *WORLD_FRAMES)
+        def is_below(edge: FrameEdge) -> bool:
+            return edge.parent not in (world, *WORLD_FRAMES)
 
+        def is_rigid(edge: FrameEdge) -> bool:
+            return edge.t_ns is None and is_below(edge)
+
+        above: list[str] = []
+        with suppress(StageError):  # what moves above may be placed by two localisers
+            above.extend(edge.parent for edge in self.up(frame, is_below))
+        bases = [name for name in above if name.rsplit("/", 1)[-1] in BASE_FRAMES]
+        frame = bases[0] if bases else frame
         return [frame, *(edge.parent for edge in self.up(frame, is_rigid))][-1]
 
     def world_root(self, frame: str) -> str:

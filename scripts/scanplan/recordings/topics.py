@@ -121,7 +121,34 @@ def choose_cloud_topic(topics: Sequence[Topic], wanted: str | None, where: str) 
         raise StageError(
             f"{where}: zero messages on {_list(candidates)}; record again with the sensor running"
         )
-    return _only(filled, where, "input.cloud_topic")
+    return _only(
+        filled,
+        where,
+        "input.cloud_topic, or give it those of one robot's scanners as a list [A, B]",
+    )
+
+
+def leave_other_robots(topics: Sequence[Topic], cloud: Topic) -> list[Topic]:
+    """Return the topics without those of other robots than the one that has a cloud's topic.
+
+    A namespace beside one of the cloud's is another robot's where poses or transforms in both are
+    called alike and of one type: /robot2 beside /robot1 for /robot1/points, as both have odom or
+    tf. A second scanner has neither.
+    """
+    placing = (*POSES, PATH, *TRANSFORMS)
+    known = {(t.name.lstrip("/"), t.msgtype) for t in topics if t.msgtype in placing}
+    own = cloud.name.lstrip("/").split("/")[:-1]
+    others = set()
+    for topic in topics:
+        *above, _ = topic.name.lstrip("/").split("/")
+        for depth in range(min(len(above), len(own))):
+            if above[depth] == own[depth]:
+                continue
+            rest = topic.name.lstrip("/").split("/")[depth + 1 :]
+            if ("/".join([*own[: depth + 1], *rest]), topic.msgtype) in known:
+                others.add("/".join(above[: depth + 1]) + "/")
+            break
+    return [t for t in topics if not t.name.lstrip("/").startswith(tuple(others))]
 
 
 def choose_pose_topic(topics: Sequence[Topic], wanted: str | None, where: str) -> Topic | None:

@@ -150,9 +150,9 @@ def _measure_scale(scale: float, sigma: float) -> Measured:
     off = float(np.clip(abs(scale - 1) - _SURE * sigma, 0.0, None))
     cause = "the scale of ranges or of poses is wrong"
     remedy = "calibrate both against a tape"
-    for which, of in (("poses", _FEET), ("ranges", 1 / _FEET)):
+    for which, key, of in (("poses", "pose_unit", _FEET), ("ranges", "cloud_unit", 1 / _FEET)):
         if abs(scale / of - 1) <= _NEAR_FEET:
-            cause, remedy = f"{which} are in feet", "give both in metres"
+            cause, remedy = f"{which} are in feet", f"set advanced.input.{key}: ft"
     return state_witness("scale", off, scale=scale, sigma=sigma, cause=cause, remedy=remedy)
 
 

@@ -135,8 +135,10 @@ def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
             "state it by input.base_from_sensor",
         )
 
-    def in_feet(which: str, other: str) -> Misreading:
-        return Misreading(f"{which} are in feet, {other} in metres", "give both in metres")
+    def in_feet(which: str, other: str, key: str) -> Misreading:
+        return Misreading(
+            f"{which} are in feet, {other} in metres", f"set advanced.input.{key}: ft"
+        )
 
     quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     optical = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
@@ -152,8 +154,8 @@ def _list_mountings() -> list[tuple[Misreading, FloatArray]]:
             ),
             optical,
         ),
-        (in_feet("ranges", "poses"), _FOOT_M * np.eye(3)),
-        (in_feet("poses", "ranges"), np.eye(3) / _FOOT_M),
+        (in_feet("ranges", "poses", "cloud_unit"), _FOOT_M * np.eye(3)),
+        (in_feet("poses", "ranges", "pose_unit"), np.eye(3) / _FOOT_M),
     ]
 
 

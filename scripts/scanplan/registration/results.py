@@ -80,9 +80,11 @@ def check_any_kept(results: Sequence[ScanResult], n_dropped: int, where: FilePat
     if not any(result.kept for result in results):
         raise StageError(
             f"{where}: {summarise_registration(results, n_dropped)}; at least one scan is needed:"
-            " check whether ranges are in metres (in millimetres all are beyond input.max_range_m),"
-            " input.min_range_m, input.max_range_m and registration.min_points, and whether the"
-            " clouds hold returns at all"
+            " if all are out of range they may be in millimetres (set"
+            " advanced.input.cloud_unit: mm, and advanced.input.pose_unit, too, if poses are in"
+            " it); else check input.min_range_m,"
+            " input.max_range_m and registration.min_points, and whether the clouds hold returns at"
+            " all"
         )
 
 

@@ -181,7 +181,7 @@ WITNESSES = {
         "all is too large for a building",
         "half of the points lie farther than {value} from the sensor",
         "ranges are in centimetres, or in another unit than metres",
-        "give ranges and poses in metres",
+        "set advanced.input.cloud_unit: cm, and advanced.input.pose_unit, too, if poses are in it",
     ),
     # 7.1 mm in a hotel; data sheets state 30 mm at most
     "range offset": Witness(
@@ -364,7 +364,7 @@ WITNESSES = {
         "the way leads through several rooms and nowhere nearer to a wall than {value}, and doors"
         " are narrower than that",
         "ranges and poses may be in feet",
-        "give both in metres",
+        "set advanced.input.cloud_unit and advanced.input.pose_unit: ft",
     ),
     # 1.98 m of one that hangs from a mast
     "sensor height": Witness(
@@ -375,7 +375,8 @@ WITNESSES = {
         "the sensor is too high above the floor",
         "the sensor was carried {value} above the floor",
         "ranges and poses may be in feet, or another storey's floor was seen",
-        "give both in metres; make each storey a dataset of its own",
+        "set advanced.input.cloud_unit and advanced.input.pose_unit: ft; make each storey a dataset"
+        " of its own",
     ),
     # 0.59 of the same one
     "head room": Witness(

@@ -4,19 +4,12 @@ import io
 
 import numpy as np
 import trimesh
-from scipy import constants
 
 from scanplan.errors import StageError
 from scanplan.lab.buildings.tolerances import DRAWN_M, MAX_EXTENT_M, MESHING_M
+from scanplan.recordings.units import METRES
 from scanplan.types import FilePath, FloatArray
 
-METRES = {
-    "m": 1.0,
-    "cm": constants.centi,
-    "mm": constants.milli,
-    "in": constants.inch,
-    "ft": constants.foot,
-}
 MIN_EXTENT_M = 1.5  # a smaller floor has no room for a rover
 MAX_HEIGHT_M = 60.0  # a higher one is in another unit, or a tower to cut a floor out of
 _STOREY_HEIGHTS_M = (2.0, 12.0)  # of one storey, halls among them, to guess a unit by

@@ -12,6 +12,7 @@ from scanplan.recordings import frame_edges, map_origin
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import UntimedScans
 from scanplan.recordings.stations.angular_grid import STEP_DEG, AngularGrid
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
 
@@ -58,7 +59,15 @@ class StationScans(UntimedScans):
         If there is none, a pose is none, or several have one and the same.
     """
 
-    def __init__(self, where: str, stations: Sequence[Station], **reading: Any) -> None:
+    def __init__(
+        self,
+        where: str,
+        stations: Sequence[Station],
+        *,
+        units: Units = IN_METRES,
+        **reading: Any,
+    ) -> None:
+        self._unit_m = units.cloud_m
         if not stations:
             raise StageError(f"{where}: holds no scan with points; export it again")
         self._stations = stations
@@ -66,6 +75,7 @@ class StationScans(UntimedScans):
         _check_poses(stations, poses)
         stamps_ns = np.arange(1, len(stations) + 1) * _APART_NS
         xyz_m, quat = se3.split_pose(poses)
+        xyz_m = units.pose_m * xyz_m
         xyz_m = xyz_m - map_origin.find_origin(where, xyz_m)
         track = frame_edges.FrameEdge("map", "sensor", xyz_m, quat, stamps_ns)
         super().__init__(where, track, stamps_ns, STATIONS, **reading)
@@ -79,7 +89,7 @@ class StationScans(UntimedScans):
         station = self._stations[scan_id]
         grid = AngularGrid()
         for xyz_m in station.read_blocks():
-            grid.add(xyz_m)
+            grid.add(self._unit_m * xyz_m)
         if grid.share_behind > _MOST_BEHIND:
             raise StageError(
                 f"{station.name}: in {grid.share_behind:.0%} of the directions from its scanner"
