@@ -6,7 +6,7 @@ import shapely
 
 from helpers import floorplan_making
 from scanplan.plan import floorplan
-from scanplan.store import schemas
+from scanplan.store import doubts, schemas
 from scanplan.validation import confidence
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
@@ -187,21 +187,27 @@ def test_the_coefficients_are_of_features_that_there_are(table):
     assert 0 < COEFFICIENTS["level"] < 1
 
 
-def test_where_no_height_is_seen_nothing_is_likely_or_not():
-    """What was learned with heights says nothing then; weak walls and unknown gaps stay doubted."""
-    planar = floorplan.make_floorplan(PARTS, np.nan, np.nan)
-    found = confidence.rate_elements(planar, validation())
+@pytest.mark.parametrize(("floor_z_m", "rayless"), [(np.nan, ()), (0.0, ("a cloud alone",))])
+def test_where_no_height_or_no_ray_is_seen_nothing_is_likely_or_not(floor_z_m, rayless):
+    """What was learned with both says nothing then; weak walls and unknown gaps stay doubted."""
+    doubted = doubts.Doubts(rayless=rayless)
+    plan = floorplan.make_floorplan(PARTS, floor_z_m, np.nan, doubted=doubted)
+    found = confidence.rate_elements(plan, validation())
     walls = found["table"] == "walls"
     assert np.isnan(found["p_true"][walls]).all()
     assert (found["verify"][walls] == PARTS["walls"]["verify"]).all()
     assert not found["verify"][found["table"] == "rooms"].any()
 
 
-@pytest.mark.parametrize(("floor_z_m", "is_unknown"), [(0.0, False), (np.nan, True)])
-def test_glass_in_one_plane_may_be_a_way_out(floor_z_m, is_unknown):
+@pytest.mark.parametrize(
+    ("floor_z_m", "rayless", "is_unknown"),
+    [(0.0, (), False), (np.nan, (), True), (0.0, ("a cloud alone",), True)],
+)
+def test_glass_in_one_plane_or_without_rays_may_be_a_way_out(floor_z_m, rayless, is_unknown):
     kinds = np.full(len(PARTS["openings"]["type"]), "glass", object)
     parts = PARTS | {"openings": PARTS["openings"] | {"type": kinds}}
-    plan = floorplan.make_floorplan(parts, floor_z_m, 2.5)
+    doubted = doubts.Doubts(rayless=rayless)
+    plan = floorplan.make_floorplan(parts, floor_z_m, 2.5, doubted=doubted)
     found = confidence.rate_elements(plan, validation(), COEFFICIENTS | {"level": 0.0})
     of_openings = found["table"] == "openings"
     assert (found["verify"][of_openings] == is_unknown).all()

@@ -21,8 +21,16 @@ def test_what_a_table_is_told_it_hands_on(tmp_path):
     path = tmp_path / "motion.parquet"
     tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
     assert doubts.read_doubts(path, schemas.MOTION) == found
-    assert found.damage == ("half is lost",)
+    assert found.damage == ("half is lost",) and not found.rayless
     assert found.contradictions == ("walls are crossed: doors; look",)
+
+
+def test_that_there_are_no_rays_is_handed_on(tmp_path):
+    path = tmp_path / "motion.parquet"
+    found = doubts.Doubts(rayless=("a map alone",)).join(doubts.Doubts(damage=("half is lost",)))
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
+    assert doubts.read_doubts(path, schemas.MOTION) == found
+    assert found.rayless == ("a map alone",) and found.damage == ("half is lost",)
 
 
 def test_a_table_without_doubts_has_no_note(tmp_path):

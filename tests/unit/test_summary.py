@@ -63,6 +63,13 @@ def test_a_plan_whose_elements_are_not_rated_says_so():
     assert doubtful.endswith("is not known, as no heights above the floor were seen")
 
 
+def test_a_plan_without_rays_says_what_stands_for_them():
+    doubted = doubts.Doubts(rayless=("a map alone",))
+    made = plan(doubted=doubted)
+    assert summarise_survey(made, survey()).splitlines()[1] == "no rays  a map alone"
+    assert made.mark == "made without rays"
+
+
 def test_an_unknown_prediction_is_no_number():
     unknown = PredictionFacts(
         0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"

@@ -215,6 +215,10 @@ class BagSurvey:
         losses = filter(None, (bag.describe_loss() for bag in self._bags))
         return [*losses, *self._damaged.describe()]
 
+    def describe_rays(self) -> list[str]:
+        """Return nothing: they were recorded."""
+        return []
+
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
         recorded = (bag for bag in self._bags if any(topic.count for topic in bag.topics))

@@ -41,19 +41,20 @@ def rate_elements(
         The columns of `schemas.VALIDATION`.
     coefficients : dict
         As `confidence_coefficients` has them: `level`, below which an element is to be verified,
-        and a model by table. They hold where heights above the floor are seen; of a plan without
-        them, such as a planar survey's, probabilities are not known (NaN).
+        and a model by table. They hold where heights above the floor are seen, and rays that were
+        left out are others; of a planar survey's plan, or one without rays, probabilities are not
+        known (NaN).
     """
     described = describe_elements(plan, validation)
     level = coefficients["level"]
-    has_heights = np.isfinite(plan.floor_z_m)
+    is_ratable = np.isfinite(plan.floor_z_m) & (not plan.doubted.rayless)
     held = _find_held(plan)
     parts: dict[str, Columns] = {}
     # walls come before the rooms that are judged by them
     for table, number in NUMBERS.items():
         columns, features, model = getattr(plan, table), described[table], coefficients[table]
         p_true, shares = weigh_features(features, model)
-        if not has_heights:
+        if not is_ratable:
             p_true = np.full(len(p_true), np.nan)
         verify = p_true < level
         p_seen, _ = weigh_features(_raise_evidence(features, model, held), model)
@@ -65,9 +66,10 @@ def rate_elements(
             verify = verify | is_weak
         if table == "openings":
             is_unknown = columns["type"] == "gap"
-            p_true[is_unknown & has_heights] = 0.0
-            # in one plane beams that never came back say as much of a way out as of a pane
-            is_unknown |= (columns["type"] == "glass") & ~has_heights
+            p_true[is_unknown & is_ratable] = 0.0
+            # in one plane beams that never came back say as much of a way out as of a pane, and
+            # where none were recorded nothing
+            is_unknown |= (columns["type"] == "glass") & ~is_ratable
             verify[is_unknown] = True
             needs_person[is_unknown] = False
             doubt[is_unknown] = "not known what it is"

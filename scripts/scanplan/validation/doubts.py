@@ -69,7 +69,14 @@ def list_unrated(plan: FloorPlan) -> list[str]:
             "how likely elements are right is not known, as the stage that rates them failed: all"
             " are to be verified"
         ]
-    return ["how likely elements are is not known, as no heights above the floor were seen"]
+    return [f"how likely elements are is not known, as {explain_unrated(plan)}"]
+
+
+def explain_unrated(plan: FloorPlan) -> str:
+    """Return why elements of a plan cannot be rated whose stage did not fail."""
+    if plan.doubted.rayless:
+        return "no rays were recorded"
+    return "no heights above the floor were seen"
 
 
 def explain_doubt(kind: str, columns: Columns, row: int) -> str:
