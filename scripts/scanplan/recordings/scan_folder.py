@@ -57,7 +57,7 @@ class ScanFolder(PosedScans):
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""
-        xyz_m, time_raw = _read_cloud(self._clouds[scan_id])
+        xyz_m, time_raw = read_cloud_file(self._clouds[scan_id])
         if not self._is_in_map:
             return xyz_m, time_raw
         # points in the map are free of the sensor's motion
@@ -71,7 +71,7 @@ class ScanFolder(PosedScans):
         def read(rows: IntArray) -> Iterator[FloatArray]:
             for row in rows.tolist():
                 path = self._clouds[row]
-                yield registered_clouds.read_finite(lambda path=path: _read_cloud(path)[0])
+                yield registered_clouds.read_finite(lambda path=path: read_cloud_file(path)[0])
 
         return registered_clouds.are_in_map(self._world_from_sensor, read, self.where)
 
@@ -122,8 +122,14 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
 
 
-def _read_cloud(path: Path) -> tuple[FloatArray, Array | None]:
-    """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
+def read_cloud_file(path: Path) -> tuple[FloatArray, Array | None]:
+    """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None.
+
+    Raises
+    ------
+    StageError
+        If it is damaged, or takes more memory than is allowed.
+    """
     n_stated = (check_ply_size if path.suffix.lower() == ".ply" else check_pcd_size)(path)
     fields = _read_fields(path)
     xyz_m = fields.get("positions", np.empty((0, 3)))
