@@ -77,7 +77,7 @@ def select_section(settings: Settings, *keys: str) -> Any:
 
 def select_topics(settings: Settings) -> Keywords:
     """Return what poses depend on of the input: all but what is done to the points."""
-    poses = {"pose_kind": settings[ADVANCED]["input"]["pose_kind"]}
+    poses = {key: settings[ADVANCED]["input"][key] for key in ("pose_kind", "storey")}
     return _without(settings["input"], _POINTS_ONLY) | poses
 
 
