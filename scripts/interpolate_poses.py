@@ -57,7 +57,7 @@ def interpolate_poses(
     with open_survey(files, max_damaged_share=1.0, **reading) as survey:
         t_ns = survey.stamps()
         # what of it is lost, and not which of the clouds that are read here are damaged
-        found = doubts.Doubts().add(survey.describe_damage())
+        found = doubts.Doubts().add(survey.describe_damage(), rayless=survey.describe_rays())
         gaps = survey.describe_gaps()
         measured = [witnesses.state_witness("days apart", len(gaps), said="; ".join(gaps))]
         edges = survey.pose_edges()
@@ -90,7 +90,7 @@ def interpolate_poses(
     measured.append(
         witnesses.state_witness("no pose", share, n_without=n_without, n_asked=len(chosen))
     )
-    for sentence in found.damage:
+    for sentence in (*found.damage, *found.rayless):
         log.log_warning(f"interpolate_poses: {sentence}")
     found = found.add(findings=witnesses.tell("interpolate_poses", measured))
     columns = candidates.pose_columns(chosen, t_ns, pose, gap_s, covered)

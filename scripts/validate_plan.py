@@ -11,6 +11,7 @@ from scanplan.stage import log, witnesses
 from scanplan.store import doubts, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, Settings
 from scanplan.validation import confidence, left_out_scans, prediction, survey_witnesses
+from scanplan.validation.doubts import NO_RAYS
 
 
 def validate_plan(
@@ -57,6 +58,8 @@ def validate_plan(
     n_left_out, n_drawn = len(registered.scan_ids) - len(chosen_ids), len(rays.scan_ids)
     found = prediction.validate_by_rays(drawn, rays, limits)
     absent = prediction.explain_absence(found, len(registered.scan_ids), n_left_out)
+    if drawn.doubted.rayless:
+        absent = NO_RAYS
     notes = {
         "n_left_out": str(n_left_out),
         "n_scans": str(n_drawn),
@@ -79,17 +82,18 @@ def validate_plan(
     )
     log.log_line(
         f"validate_plan: {result}; {n_drawn} of {n_left_out} unused scans;"
-        f" {_summarise_confidence(rated)}"
+        f" {_summarise_confidence(drawn, rated)}"
     )
 
 
-def _summarise_confidence(rated: Columns) -> str:
+def _summarise_confidence(plan: floorplan.FloorPlan, rated: Columns) -> str:
     counts = [
         f"{np.sum(rated['verify'][rated['table'] == table])}"
         f" of {np.sum(rated['table'] == table)} {table}"
         for table in floorplan.NUMBERS
     ]
-    return f"to verify on site: {', '.join(counts)}"
+    words = f"; not rated, as {NO_RAYS}" if plan.doubted.rayless else ""
+    return f"to verify on site: {', '.join(counts)}{words}"
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 """Clouds in files."""
 
+import struct
+
 import numpy as np
 
 
@@ -17,4 +19,52 @@ def write_pcd(path, xyz_m, extra=None):
     )
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(header.encode() + np.hstack(columns).tobytes())
+    return path
+
+
+def write_ply(path, xyz_m):
+    """A PLY of text, in single precision."""
+    lines = "\n".join(" ".join(map(repr, row)) for row in np.asarray(xyz_m, np.float32).tolist())
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        f"end_header\n{lines}\n"
+    )
+    return path
+
+
+def write_binary_ply(path, xyz_m, order="little", x="double"):
+    """A binary PLY of doubles with an intensity; x may be of another type."""
+    header = (
+        f"ply\nformat binary_{order}_endian 1.0\nelement vertex {len(xyz_m)}\n"
+        f"property {x} x\nproperty double y\nproperty double z\nproperty uchar intensity\n"
+        "end_header\n"
+    )
+    kinds = [{"double": "f8", "float": "f4"}[x], "f8", "f8", "u1"]
+    points = np.zeros(len(xyz_m), [(n, k) for n, k in zip("xyzi", kinds, strict=True)])
+    points = points.astype(points.dtype.newbyteorder("<" if order == "little" else ">"))
+    points["x"], points["y"], points["z"] = np.asarray(xyz_m).T
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + points.tobytes())
+    return path
+
+
+def write_compressed_pcd(path, n_points, unpacked, packed=b""):
+    """A PCD that states so many points, and so many bytes to unpack."""
+    header = (
+        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+        f"WIDTH {n_points}\nHEIGHT 1\nPOINTS {n_points}\nDATA binary_compressed\n"
+    )
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(header.encode() + struct.pack("<II", len(packed), unpacked) + packed)
+
+
+def write_by_open3d(path, xyz_m, *, packed=False):
+    """Any cloud that Open3D writes, in double precision, a PCD packed or not."""
+    import open3d
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cloud = open3d.t.geometry.PointCloud(np.ascontiguousarray(xyz_m, np.float64))
+    open3d.t.io.write_point_cloud(str(path), cloud, compressed=packed)
     return path

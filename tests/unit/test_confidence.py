@@ -6,7 +6,7 @@ import shapely
 
 from helpers import floorplan_making
 from scanplan.plan import floorplan
-from scanplan.store import schemas
+from scanplan.store import doubts, schemas
 from scanplan.validation import confidence
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
@@ -253,6 +253,20 @@ def test_what_speaks_most_against_an_element_says_what_of_it_is_doubtful(feature
     of_walls = found["table"] == "walls"
     assert set(found["about"][of_walls]) == {about}
     assert set(found["doubt"][of_walls]) == {confidence.REASONS[feature]}
+
+
+@pytest.mark.parametrize("floor_z_m", [np.nan, 0.0])
+def test_where_no_ray_was_recorded_nothing_is_likely_or_not(floor_z_m):
+    """What was learned with rays says nothing then; weak walls and unknown gaps stay doubted."""
+    kinds = np.full(len(PARTS["openings"]["type"]), "glass", object)
+    parts = PARTS | {"openings": PARTS["openings"] | {"type": kinds}}
+    doubted = doubts.Doubts(rayless=("a cloud alone",))
+    plan = floorplan.make_floorplan(parts, floor_z_m, np.nan, doubted=doubted)
+    found = rate(plan)
+    assert np.isnan(found["p_true"]).all()
+    walls, openings = (found["table"] == table for table in ("walls", "openings"))
+    assert (found["verify"][walls] == PARTS["walls"]["verify"]).all()
+    assert found["verify"][openings].all()
 
 
 def test_what_a_person_corrected_is_neither_rated_nor_to_be_verified():

@@ -1,142 +1,113 @@
-"""What is listed of a toy plan's doubts, in which order and words."""
+"""Doubts go from table to table, and into summary and sheet."""
 
-from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 
 from helpers import floorplan_making
-from scanplan.exports.sheet import composition
-from scanplan.plan import floorplan_files
-from scanplan.plan.plan_wall import Nearly
-from scanplan.store import schemas, tables
-from scanplan.validation import doubt_words, doubts
+from scanplan.registration import contradictions as of_registration
+from scanplan.store import doubts, schemas, tables
+from scanplan.validation import contradictions
+
+ROW = {"t_ns": [1], "piece": [0], "time_scale": [1.0], "time_shift_s": [0.0]}
+POSE = {name: [1.0] for name in (*schemas.XYZ, *schemas.QUAT)}
 
 
-def rated(columns, rows, *, p_true=0.5, about="existence", verify=True):
-    """Return a table of which these rows are doubtful, and all others sure."""
-    n = len(columns["x0_m"]) if "x0_m" in columns else len(columns["room"])
-    chosen = np.isin(np.arange(n), rows)
-    return columns | {
-        "p_true": np.where(chosen, p_true, 0.9),
-        "verify": chosen & verify,
-        "about": np.where(chosen, about, "").astype(object),
-        "doubt": np.where(chosen, "why", "").astype(object),
-    }
+def test_what_a_table_is_told_it_hands_on(tmp_path):
+    crossed = doubts.Finding("way through walls", 1.5, "walls are crossed", "doors", "look")
+    found = doubts.Doubts().add(["half is lost"], [crossed]).add(["half is lost"], [crossed])
+    path = tmp_path / "motion.parquet"
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
+    assert doubts.read_doubts(path, schemas.MOTION) == found
+    assert found.damage == ("half is lost",) and not found.rayless
+    assert found.contradictions == ("walls are crossed: doors; look",)
 
 
-def plan(**tables):
-    made = {
-        "walls": rated(floorplan_making.walls(), []),
-        "openings": rated(floorplan_making.openings(), []),
-        "rooms": rated(floorplan_making.rooms(), []),
-    }
-    return floorplan_making.plan(**made | tables)
+def test_that_there_are_no_rays_is_handed_on(tmp_path):
+    path = tmp_path / "motion.parquet"
+    found = doubts.Doubts(rayless=("a map alone",)).join(doubts.Doubts(damage=("half is lost",)))
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=found.as_notes())
+    assert doubts.read_doubts(path, schemas.MOTION) == found
+    assert found.rayless == ("a map alone",) and found.damage == ("half is lost",)
 
 
-def test_what_costs_most_if_it_is_wrong_comes_first():
-    """A room at 4, a door at 3, a wall at 2 and a window at 1, each as likely wrong as right."""
-    made = plan(
-        walls=rated(floorplan_making.walls(), [0]),
-        openings=rated(floorplan_making.openings(), [0, 2]),
-        rooms=rated(floorplan_making.rooms(), [0]),
-    )
-    found = doubts.list_doubts(made)
-    assert [doubt.element for doubt in found] == ["room 0", "opening 0", "wall 0", "opening 2"]
-    assert [doubt.cost for doubt in found] == [2.0, 1.5, 1.0, 0.5]
+def test_a_table_without_doubts_has_no_note(tmp_path):
+    path = tmp_path / "motion.parquet"
+    tables.write_table(path, schemas.MOTION, ROW | POSE, notes=doubts.NO_DOUBT.as_notes())
+    assert not doubts.read_doubts(path, schemas.MOTION) and doubts.NO_DOUBT.as_notes() == {}
 
 
-def test_what_is_likelier_wrong_comes_before_what_costs_as_much():
-    walls = rated(floorplan_making.walls(), [0, 1])
-    walls["p_true"][:2] = (0.6, 0.1)
-    found = doubts.list_doubts(plan(walls=walls))
-    assert [doubt.element for doubt in found] == ["wall 1", "wall 0"]
-
-
-def test_an_end_is_a_part_last_and_where_it_is_known_less():
-    walls = rated(floorplan_making.walls(), [1], about="end", verify=False)
-    made = plan(walls=walls, openings=rated(floorplan_making.openings(), [2]))
-    part = doubts.list_doubts(made)[-1]
-    assert (part.element, part.is_part) == ("wall 1", True)
-    # the toy's second ends are known less
-    np.testing.assert_allclose(part.place_m, [walls["x1_m"][1], walls["y1_m"][1]])
-    assert [doubt.element for doubt in doubts.list_to_verify(made)] == ["opening 2"]
-    ((row, end_m),) = doubts.list_loose_ends(made)
-    assert row == 1
-    np.testing.assert_allclose(end_m, part.place_m)
-
-
-def test_a_sheet_marks_an_end_beside_it_and_no_wall():
-    walls = rated(floorplan_making.walls(), [1], about="end", verify=False)
-    sheet = composition.compose_sheet(plan(walls=walls))
-    marked = [mark.element for mark in composition.paper_marks(sheet) if mark.kind == "verify"]
-    assert [element for element in marked if element.startswith("verify-")] == ["verify-end-1"]
-    assert [w.text for w in composition.paper_words(sheet) if w.text.endswith("?")] == ["end?"]
-
-
-@pytest.mark.parametrize(("about", "mark"), [("existence", "?"), ("kind", " kind?"),
-                                             ("width", " width?")])  # fmt: skip
-def test_a_sheet_says_what_of_a_door_is_doubtful(about, mark):
-    openings = rated(floorplan_making.openings(), [0], about=about, verify=about != "width")
-    sheet = composition.compose_sheet(plan(openings=openings))
-    (said,) = [word.text for word in composition.paper_words(sheet) if word.text.endswith("?")]
-    assert said.endswith(mark.strip())
-
-
-def test_doubts_of_a_room_stand_together_the_costliest_room_first():
-    made = plan(
-        walls=rated(floorplan_making.walls(), [0, 1, 2]),
-        rooms=rated(floorplan_making.rooms(), [1]),
-    )
-    groups = doubts.group_by_room(doubts.list_doubts(made))
-    assert groups[0][0] == "Room 1" and groups[0][1][0].element == "room 1"
-    assert sum(len(of_room) for _, of_room in groups) == 4
-    assert len({room for room, _ in groups}) == len(groups)
+def verdicts(n_kept, n_rejected, n_empty=0):
+    reasons = ["kept"] * n_kept + ["icp_diverged"] * n_rejected + ["too_few_points"] * n_empty
+    return [SimpleNamespace(kept=reason == "kept", reason=reason) for reason in reasons]
 
 
 @pytest.mark.parametrize(
-    ("way", "side"),
-    [((1, 0), "right"), ((0, 1), "top"), ((-1, 0.1), "left"), ((0.1, -1), "bottom")],
+    ("kept", "rejected", "empty", "is_doubted"),
+    [(18, 3, 0, False), (16, 4, 0, True), (18, 3, 50, False), (0, 0, 5, False), (3, 1, 0, False)],
 )
-def test_a_place_is_told_by_the_side_of_its_room(way, side):
-    made = plan()
-    middle_m = np.array([made.rooms["x_m"][1], made.rooms["y_m"][1]])
-    assert doubt_words.say_where(made, 1, middle_m + way) == f"at the {side} of Room 1"
-    assert doubt_words.say_where(made, 1, None) == "Room 1"
-    assert "outside" in doubt_words.say_where(made, -1, middle_m)
+def test_scans_that_do_not_fit_are_doubted(kept, rejected, empty, is_doubted):
+    found = of_registration.measure_misfit(verdicts(kept, rejected, empty))
+    assert found.is_beyond == is_doubted
+    assert found.more["n_kept"] == kept and found.more["n_asked"] == kept + rejected
 
 
-def test_what_was_nearly_drawn_is_listed_apart_the_likeliest_first():
-    near = [Nearly(kind, np.array([(1.0, 0.0), (2.0, 0.0)]), p)
-            for kind, p in (("window", 0.3), ("wall", 0.45))]  # fmt: skip
-    made = replace(plan(), nearly=near)
-    assert doubts.list_doubts(made) == []
-    found = doubts.list_nearly(made)
-    assert [doubt.name for doubt in found] == ["Perhaps a wall", "Perhaps a window"]
-    assert found[0].question.startswith("Perhaps a wall") and "1.0 m long" in found[0].question
+@pytest.mark.parametrize(
+    ("moved_m", "rejected", "is_doubted"), [(0.0, 2, True), (0.0, 0, False), (0.01, 2, False)]
+)
+def test_scans_that_do_not_fit_where_the_sensor_is_said_to_stand_are_doubted(
+    moved_m, rejected, is_doubted
+):
+    priors = np.tile(np.eye(4), (6, 1, 1))
+    priors[2, 0, 3] = moved_m
+    priors[3] = np.nan
+    found = of_registration.measure_standstill(priors, verdicts(6 - rejected, rejected))
+    assert found.is_beyond == is_doubted and found.value == rejected * is_doubted
+    assert not is_doubted or "input.pose_topic" in found.finding.cause
 
 
-def test_a_note_holds_what_was_nearly_drawn(tmp_path):
-    near = [Nearly("door", np.array([(1.0, 0.0), (1.9, 0.12345)]), 0.34567)]
-    files = {name: tmp_path / f"{name}.parquet" for name in ("faces", "walls", "openings", "rooms")}
-    parts = {name: getattr(floorplan_making, name)() for name in files}
-    named = {"faces": schemas.FACES, "walls": schemas.PLAN_WALLS}
-    named |= {"openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
-    for name, path in files.items():
-        tables.write_table(path, named[name], parts[name])
-    files["free"] = tmp_path / "free.parquet"
-    for notes, expected in ((None, 0), ({"nearly": floorplan_files.format_nearly(near)}, 1)):
-        tables.write_table(files["free"], schemas.FREE, floorplan_making.free(), notes=notes)
-        found = floorplan_files.read_floorplan(files).nearly
-        assert len(found) == expected
-    assert (found[0].kind, found[0].p) == ("door", 0.346)
-    np.testing.assert_allclose(found[0].ends_m, [(1, 0), (1.9, 0.123)])
+def rays_at(xy_m):
+    xyz_m = np.column_stack([xy_m, np.ones(len(xy_m))])
+    return SimpleNamespace(xyz_m=xyz_m, planar=True, scan_ids=[0])
 
 
-@pytest.mark.parametrize("about", ["", "existence", "kind", "place", "outline", "end", "width"])
-@pytest.mark.parametrize("noun", ["wall", "door", "gap", "glass", "room", "face"])
-def test_every_doubt_is_a_question_that_says_where(noun, about):
-    size_m = np.nan if noun == "room" else 0.9
-    asked = doubt_words.ask(noun, about, size_m, "at the top of Room 1")
-    assert asked.endswith("?") and "at the top of Room 1" in asked
-    assert ("0.9 m" in asked) == (noun != "room")
+def points_on(plan, share, n=100):
+    """Points of which a share lies on the faces of a plan, and the others 50 m away."""
+    line = shapely.linestrings(contradictions.centrelines_m(plan.faces)[0])
+    on = shapely.get_coordinates(shapely.line_interpolate_point(line, np.linspace(0, 1, n), True))
+    on[int(share * n) :] += 50
+    return rays_at(on)
+
+
+@pytest.mark.parametrize(("share", "is_doubted"), [(0.5, False), (0.1, True)])
+def test_returns_beside_the_walls_are_doubted(share, is_doubted):
+    plan = floorplan_making.plan()
+    rays = points_on(plan, share)
+    off, through = contradictions.measure_drawn_walls(plan, rays, np.zeros((1, 2)))
+    assert off.is_beyond == is_doubted and not through.is_beyond
+    assert off.more["near"] == pytest.approx(share, abs=0.02)
+
+
+def test_a_way_through_walls_is_doubted():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    there_and_back = np.tile([middle - 0.2, middle + 0.2], (6, 1))
+    share = contradictions.measure_share_through_walls(plan, there_and_back)
+    beside = contradictions.measure_share_through_walls(plan, there_and_back + 1000)
+    assert share == 1.0 and beside == 0.0
+
+
+def test_a_line_between_scans_far_apart_is_no_way_that_was_driven():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    far_apart = np.tile([middle - 0.9, middle + 0.9], (20, 1))
+    assert contradictions.measure_share_through_walls(plan, far_apart) == 0.0
+
+
+def test_of_few_steps_nothing_is_said():
+    plan = floorplan_making.plan()
+    middle = contradictions.centrelines_m(plan.walls)[0].mean(axis=0)
+    few = np.tile([middle - 0.2, middle + 0.2], (5, 1))
+    assert contradictions.measure_share_through_walls(plan, few) == 0.0

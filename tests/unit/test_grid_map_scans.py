@@ -45,7 +45,7 @@ def read(folder):
     with open_survey(dataset_files.find_files(folder), **LIMITS) as survey:
         t_ns = survey.stamps()
         assert survey.planar and survey.pose_kind == pose_kind.STATIONS
-        assert ["0.05 m" in told for told in survey.describe_damage()] == [True]
+        assert ["0.05 m" in told for told in survey.describe_rays()] == [True]
         pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1)
         scans = list(survey.scans(range(len(t_ns))))
     return pose[:, :2, 3], [s.xyz_m + p[:3, 3] for s, p in zip(scans, pose, strict=True)]

@@ -151,9 +151,9 @@ def test_a_trajectory_that_is_none_ends_in_a_line(tmp_path, text, named):
     assert named in refusal(tmp_path)
 
 
-def test_points_without_a_trajectory_end_in_a_line(tmp_path):
-    write_las(tmp_path / "a.las", POINTS, TIME_S)
-    assert "0 of trajectory.txt" in refusal(tmp_path)
+def test_two_trajectories_end_in_a_line(tmp_path):
+    write_trajectory(drive(tmp_path) / "trajectory.tum", AT_S, PLACES)
+    assert "2 of trajectory.txt" in refusal(tmp_path)
 
 
 def test_a_cloud_beside_bags_is_not_read(tmp_path):

@@ -1,10 +1,8 @@
-import struct
-
 import numpy as np
 import pytest
 
 from helpers import bag_making
-from helpers.cloud_files import write_pcd
+from helpers.cloud_files import write_binary_ply, write_compressed_pcd, write_pcd, write_ply
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, scan_folder
@@ -13,17 +11,6 @@ from scanplan.store import tum
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 POINTS = bag_making.room_points(40)
-
-
-def write_ply(path, xyz_m):
-    lines = "\n".join(" ".join(map(repr, row)) for row in np.asarray(xyz_m, np.float32).tolist())
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(
-        f"ply\nformat ascii 1.0\nelement vertex {len(xyz_m)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"end_header\n{lines}\n"
-    )
-    return path
 
 
 def folder(tmp_path, names, poses):
@@ -161,21 +148,6 @@ def test_asking_for_a_scan_that_is_not_there(tmp_path):
         list(survey.scans([1]))
 
 
-def write_binary_ply(path, xyz_m, order="little", x="double"):
-    header = (
-        f"ply\nformat binary_{order}_endian 1.0\nelement vertex {len(xyz_m)}\n"
-        f"property {x} x\nproperty double y\nproperty double z\nproperty uchar intensity\n"
-        "end_header\n"
-    )
-    kinds = [{"double": "f8", "float": "f4"}[x], "f8", "f8", "u1"]
-    points = np.zeros(len(xyz_m), [(n, k) for n, k in zip("xyzi", kinds, strict=True)])
-    points = points.astype(points.dtype.newbyteorder("<" if order == "little" else ">"))
-    points["x"], points["y"], points["z"] = np.asarray(xyz_m).T
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(header.encode() + points.tobytes())
-    return path
-
-
 def scans_of(folder):
     (folder / "poses.tum").write_text("100 0 0 0 0 0 0 1\n")
     files = dataset_files.find_files(folder)
@@ -232,16 +204,6 @@ def test_poses_may_begin_with_a_mark_of_their_coding(tmp_path):
     (tmp_path / "poses.tum").write_text("100 1 2 3 0 0 0 1\n", encoding="utf-8-sig")
     t_ns, rows = tum.read_tum(tmp_path / "poses.tum")
     assert t_ns.tolist() == [100 * 10**9] and rows[0, :3].tolist() == [1, 2, 3]
-
-
-def write_compressed_pcd(path, n_points, unpacked, packed=b""):
-    """A PCD that states so many points, and so many bytes to unpack."""
-    header = (
-        "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
-        f"WIDTH {n_points}\nHEIGHT 1\nPOINTS {n_points}\nDATA binary_compressed\n"
-    )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(header.encode() + struct.pack("<II", len(packed), unpacked) + packed)
 
 
 @pytest.mark.parametrize(

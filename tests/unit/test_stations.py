@@ -195,14 +195,15 @@ def test_a_cut_off_ptx_ends_in_a_line(tmp_path):
     assert "scan 1" in refusal(path)
 
 
-def test_a_merged_cloud_is_no_station(tmp_path):
+def test_one_merged_cloud_among_stations_ends_in_a_line(tmp_path):
     points = [
         se3.transform_points(pose, xyz)
         for pose, xyz in zip(
             small_flat.station_poses(), small_flat.station_points(1.0), strict=True
         )
     ]
-    path = write_e57(tmp_path / "a.e57", [np.eye(4)], [np.concatenate(points) - (2, 1, 1)])
+    cloud = np.concatenate(points) - (2, 1, 1)
+    path = write_e57(tmp_path / "a.e57", POSES, [cloud, SPHERE])
     assert "merged" in refusal(path)
 
 

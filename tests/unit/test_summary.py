@@ -63,6 +63,13 @@ def test_what_to_verify_is_named_the_likeliest_to_be_wrong_first():
     assert doubtful.startswith("2 openings (1, 0), 1 wall (2) to verify on site")
 
 
+def test_a_plan_without_rays_says_what_stands_for_them():
+    doubted = doubts.Doubts(rayless=("a map alone",))
+    made = plan(doubted=doubted)
+    assert summarise_survey(made, survey()).splitlines()[1] == "no rays  a map alone"
+    assert made.mark == "made without rays"
+
+
 def test_an_unknown_prediction_is_no_number():
     unknown = PredictionFacts(
         0, 0, np.nan, (np.nan, np.nan), np.nan, 0, 0, 0, absent="one scan alone"

@@ -134,8 +134,10 @@ class FloorPlan:
 
     @property
     def mark(self) -> str:
-        """What every sheet of it says of a damaged recording; empty where none is."""
-        return "from a damaged recording" if self.doubted.damage else ""
+        """What every sheet of it says of a recording that is damaged, or without rays."""
+        damaged = "from a damaged recording" if self.doubted.damage else ""
+        rayless = "made without rays" if self.doubted.rayless else ""
+        return ", ".join(filter(None, [damaged, rayless]))
 
     @cached_property
     def thick(self) -> BoolArray:

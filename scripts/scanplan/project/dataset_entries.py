@@ -19,6 +19,8 @@ _PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
 STATION_SUFFIXES = (".e57", ".ptx")
 _LAS_SUFFIXES = (".las", ".laz")
+MERGED_SUFFIXES = (*_LAS_SUFFIXES, *_CLOUD_SUFFIXES)
+"""Of clouds that may be merged ones; stations' files may be, too."""
 _IMAGE = re.compile(r"^image\s*:\s*[\"']?([^\"'#\n]+)", re.MULTILINE)
 _TRAJECTORIES = ("trajectory.txt", "trajectory.csv", "trajectory.tum")
 
@@ -101,23 +103,29 @@ def is_of_stations(file: Path) -> bool:
     return file.suffix.lower() in STATION_SUFFIXES
 
 
-def list_las_drive(folder: Path) -> list[Path]:
-    """Return the clouds and the trajectory of a drive; nothing where there are no clouds.
+def list_clouds(folder: Path) -> list[Path]:
+    """Return the clouds in a folder, and beside .las and .laz the trajectory, where there is one.
 
     Raises
     ------
     StageError
-        If there is no trajectory, or more than one.
+        If there is more than one.
     """
     files = [entry for entry in visible(folder) if not entry.is_dir()]
-    clouds = [file for file in files if file.suffix.lower() in _LAS_SUFFIXES]
+    clouds = [file for file in files if is_merged(file)]
+    timed = [file for file in clouds if file.suffix.lower() in _LAS_SUFFIXES]
     trajectories = [file for file in files if is_trajectory(file)]
-    if clouds and len(trajectories) != 1:
+    if timed and len(trajectories) > 1:
         raise StageError(
-            f"{clouds[0]}: {len(trajectories)} of {', '.join(_TRAJECTORIES)} beside it; give one,"
+            f"{timed[0]}: {len(trajectories)} of {', '.join(_TRAJECTORIES)} beside it; give one,"
             " with lines `t x y z`: where the sensor was"
         )
-    return [*clouds, *trajectories] if clouds else []
+    return [*timed, *trajectories] if timed and trajectories else clouds
+
+
+def is_merged(file: Path) -> bool:
+    """Return whether a file may be a merged cloud, by its name."""
+    return file.suffix.lower() in MERGED_SUFFIXES
 
 
 def is_trajectory(file: Path) -> bool:

@@ -24,15 +24,19 @@ TARGETS = ("all", *OF_LABORATORY)
 """What a command may ask for beside files."""
 _TAKEN = (*TARGETS, "summary.html", "summary.parquet")
 """What else stands under results/, or is asked for by its name."""
-_FILE_SUFFIXES = (".bag", ".mcap", ".db3", *dataset_entries.STATION_SUFFIXES)
+_FILE_SUFFIXES = (
+    *(".bag", ".mcap", ".db3"),
+    *dataset_entries.STATION_SUFFIXES,
+    *dataset_entries.MERGED_SUFFIXES,
+)
 """Of files that are a dataset by themselves."""
 _SURVEY_SUFFIXES = (".yaml", ".yml")
 _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
     "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), scans/*.pcd|*.ply with poses.tum,"
-    " stations (*.e57, *.ptx), *.las|*.laz with a trajectory (trajectory.txt), or a grid map"
-    " (*.yaml with its image)"
+    " stations (*.e57, *.ptx), *.las|*.laz with a trajectory (trajectory.txt), a merged cloud"
+    " (*.las, *.laz, *.ply, *.pcd, *.e57), or a grid map (*.yaml with its image)"
 )
 
 
@@ -115,7 +119,8 @@ def find_files(path: FilePath) -> list[str]:
     Parameters
     ----------
     path : path-like
-        A dataset folder, a rosbag2 folder, or a single recording (.bag, .mcap, .db3, .e57, .ptx).
+        A dataset folder, a rosbag2 folder, or a single recording (.bag, .mcap, .db3, .e57, .ptx)
+        or merged cloud (.las, .laz, .ply, .pcd).
 
     Returns
     -------
@@ -173,14 +178,15 @@ def _list_kinds(folder: Path) -> list[list[Path]]:
         return kinds
     return [
         dataset_entries.list_stations(folder),
-        dataset_entries.list_las_drive(folder),
+        dataset_entries.list_clouds(folder),
         dataset_entries.list_grid_map(folder),
     ]
 
 
 def _is_dataset_file(path: Path) -> bool:
     # stations' programs write suffixes in capitals, recorders do not
-    return path.suffix in _FILE_SUFFIXES or dataset_entries.is_of_stations(path)
+    is_cloud = dataset_entries.is_of_stations(path) or dataset_entries.is_merged(path)
+    return path.suffix in _FILE_SUFFIXES or is_cloud
 
 
 def group_recordings(files: Iterable[str]) -> list[str]:
@@ -218,6 +224,11 @@ def is_of_stations(files: Iterable[str]) -> bool:
 def is_las_drive(files: Iterable[str]) -> bool:
     """Return whether the files are points in the map with a trajectory."""
     return any(dataset_entries.is_trajectory(Path(file)) for file in files)
+
+
+def is_merged_cloud(files: Iterable[str]) -> bool:
+    """Return whether the files are clouds that nothing tells from where they were seen."""
+    return all(dataset_entries.is_merged(Path(file)) for file in files)
 
 
 def is_grid_map(files: Iterable[str]) -> bool:

@@ -80,13 +80,12 @@ class GridMapScans(PosedScans):
         super().__init__(str(path), track, stamps_ns, STATIONS, **reading)
         self._xy_m = xy_m
 
-    def describe_damage(self) -> list[str]:
-        """Return what a plan of a map alone is worth, and what could not be read, in sentences."""
+    def describe_rays(self) -> list[str]:
+        """Return what a plan of a map alone is worth, in a sentence."""
         return [
             f"a grid map alone, no scans: the plan is what {len(self._xy_m)} places in its free"
             f" floor would see, to half a cell of {self._grid.cell_m:g} m; what furniture, people"
-            " and shut doors hid is as the map has it",
-            *super().describe_damage(),
+            " and shut doors hid is as the map has it"
         ]
 
     @property

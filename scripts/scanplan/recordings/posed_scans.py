@@ -110,6 +110,10 @@ class PosedScans(ABC):
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._stamps_ns
 
+    def describe_rays(self) -> list[str]:
+        """Return nothing: places, and what they saw, were recorded."""
+        return []
+
     def describe_gaps(self) -> list[str]:
         """Return nothing: it is one recording."""
         return []

@@ -253,6 +253,10 @@ class BagSurvey:
         """Return what of the recordings is lost whatever was read, in sentences."""
         return [loss for loss in (bag.describe_loss() for bag in self._bags) if loss]
 
+    def describe_rays(self) -> list[str]:
+        """Return nothing: they were recorded."""
+        return []
+
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
         recorded = (bag for bag in self._bags if any(topic.count for topic in bag.topics))

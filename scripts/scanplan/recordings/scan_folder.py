@@ -61,7 +61,7 @@ class ScanFolder(PosedScans):
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""
-        xyz_m, time_raw = _read_cloud(self._clouds[scan_id], self._unit_m)
+        xyz_m, time_raw = read_cloud_file(self._clouds[scan_id], self._unit_m)
         if not self._is_in_map:
             return xyz_m, time_raw
         # points in the map are free of the sensor's motion
@@ -76,7 +76,7 @@ class ScanFolder(PosedScans):
             for row in rows.tolist():
                 path = self._clouds[row]
                 yield registered_clouds.read_finite(
-                    lambda path=path: _read_cloud(path, self._unit_m)[0]
+                    lambda path=path: read_cloud_file(path, self._unit_m)[0]
                 )
 
         return registered_clouds.are_in_map(self._world_from_sensor, read, self.where)
@@ -128,8 +128,19 @@ def _natural_key(path: Path) -> list[tuple[int, str]]:
     return [(int(part), "") if part.isdigit() else (-1, part) for part in parts]
 
 
-def _read_cloud(path: Path, unit_m: float) -> tuple[FloatArray, Array | None]:
-    """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None."""
+def read_cloud_file(path: Path, unit_m: float = 1.0) -> tuple[FloatArray, Array | None]:
+    """Read xyz_m (n, 3) float32 and the per-point times as recorded, or None.
+
+    Parameters
+    ----------
+    unit_m : float
+        How many metres the unit of the points has.
+
+    Raises
+    ------
+    StageError
+        If it is damaged, or takes more memory than is allowed.
+    """
     n_stated = (check_ply_size if path.suffix.lower() == ".ply" else check_pcd_size)(path)
     fields = _read_fields(path)
     xyz_m = fields.get("positions", np.empty((0, 3)))

@@ -33,6 +33,7 @@ def open_survey(
     deskew: bool = True,
     pose_kind: str = FOUND,
     motion: SensorMotion | None = None,
+    storey: int | None = None,
 ) -> Iterator[Survey]:
     """Open all recordings of a dataset as one survey.
 
@@ -65,6 +66,8 @@ def open_survey(
         Of which kind the poses are (`pose_kind.find_pose_kind`); found by default.
     motion : trajectory.SensorMotion, optional
         How the sensor moved.
+    storey : int, optional
+        Which of a merged cloud, 0 the lowest; by default the one with most floor.
 
     Yields
     ------
@@ -92,8 +95,38 @@ def open_survey(
         log.log_line(scaled)
     opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
-        survey = _open_recordings(files, stack, opening, topics_and_frame, common)
+        survey = _open_points(files, storey, common)
+        if survey is None:
+            survey = _open_recordings(files, stack, opening, topics_and_frame, common)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
+
+
+def _open_points(
+    files: Sequence[str], storey: int | None, common: Mapping[str, Any]
+) -> Survey | None:
+    """Return a survey of stations, or of a merged cloud; None of other files."""
+    where, paths = ", ".join(files), list(map(Path, files))
+    if dataset_files.is_merged_cloud(files):
+        from scanplan.recordings.merged import merged_cloud, point_files
+
+        return merged_cloud.MergedCloud(
+            where, point_files.list_sources(paths), storey=storey, **common
+        )
+    if not dataset_files.is_of_stations(files):
+        return None
+    from scanplan.recordings.stations import e57_stations, ptx_stations, station_scans
+
+    list_stations = {
+        ".e57": e57_stations.list_e57_stations,
+        ".ptx": ptx_stations.list_ptx_stations,
+    }
+    found = [one for path in paths for one in list_stations[path.suffix.lower()](path)]
+    if station_scans.are_merged(found):
+        from scanplan.recordings.merged import merged_cloud
+
+        sources = [station.read_in_world for station in found]
+        return merged_cloud.MergedCloud(where, sources, storey=storey, **common)
+    return station_scans.StationScans(where, found, **common)
 
 
 def _open_recordings(
@@ -116,17 +149,6 @@ def _open_recordings(
         from scanplan.recordings import las_drive
 
         return las_drive.LasDrive(files, **common)
-    if dataset_files.is_of_stations(files):
-        from scanplan.recordings.stations import e57_stations, ptx_stations, station_scans
-
-        list_stations = {
-            ".e57": e57_stations.list_e57_stations,
-            ".ptx": ptx_stations.list_ptx_stations,
-        }
-        found = []
-        for path in map(Path, files):
-            found += list_stations[path.suffix.lower()](path)
-        return station_scans.StationScans(", ".join(files), found, **common)
     from scanplan.recordings import bags, recorded_survey
 
     opened = [

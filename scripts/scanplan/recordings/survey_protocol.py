@@ -61,6 +61,10 @@ class Survey(Protocol):
         """Return what could not be read so far, in sentences."""
         ...
 
+    def describe_rays(self) -> list[str]:
+        """Return what stands for rays where the recording has none, in sentences."""
+        ...
+
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
         ...

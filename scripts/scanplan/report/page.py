@@ -88,6 +88,7 @@ def report_page(
         prediction=wording.prediction_sentence(survey.prediction),
         contradictions=[
             *plan.doubted.damage,
+            *plan.doubted.rayless,
             *wording.list_contradictions(plan),
             *doubts.list_unrated(plan),
             *wording.list_notes(plan),

@@ -45,11 +45,12 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         f"{survey.chosen:,} of {_count(n_kept, 'registered scan')}"
         f" ({n_candidates:,} candidates of {survey.n_recorded:,} recorded)"
     )
-    damage = plan.doubted.damage
+    damage, rayless = plan.doubted.damage, plan.doubted.rayless
     notes, reference = wording.list_notes(plan), plan.georeference
     lines = [
         ("verdict", judge_plan(plan).line),
         *([("damaged", "; ".join(damage))] if damage else []),
+        *([("no rays", "; ".join(rayless))] if rayless else []),
         ("found", found),
         ("doubtful", "; ".join(doubts) or "nothing that the plan marks"),
         *([("placed", wording.state_reference(reference))] if reference else []),

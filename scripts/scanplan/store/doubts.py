@@ -52,10 +52,14 @@ class Doubts:
     findings : tuple of Finding
         What cannot be if units, mounting and clocks were as the recordings say, and what else a
         reader of the plan has to know.
+    rayless : tuple of str
+        What stands for rays where none were recorded: then those of scans that were left out say
+        nothing new.
     """
 
     damage: tuple[str, ...] = ()
     findings: tuple[Finding, ...] = ()
+    rayless: tuple[str, ...] = ()
 
     @property
     def contradictions(self) -> tuple[str, ...]:
@@ -63,22 +67,29 @@ class Doubts:
         return tuple(found.sentence for found in self.findings)
 
     def __bool__(self) -> bool:
-        return bool(self.damage or self.findings)
+        return bool(self.damage or self.findings or self.rayless)
 
-    def add(self, damage: Sequence[str] = (), findings: Sequence[Finding] = ()) -> "Doubts":
+    def add(
+        self,
+        damage: Sequence[str] = (),
+        findings: Sequence[Finding] = (),
+        rayless: Sequence[str] = (),
+    ) -> "Doubts":
         """Return these and further ones, each once."""
         return Doubts(
             tuple(dict.fromkeys((*self.damage, *damage))),
             tuple(dict.fromkeys((*self.findings, *findings))),
+            tuple(dict.fromkeys((*self.rayless, *rayless))),
         )
 
     def join(self, others: "Doubts") -> "Doubts":
         """Return these and others, each once."""
-        return self.add(others.damage, others.findings)
+        return self.add(others.damage, others.findings, others.rayless)
 
     def as_notes(self) -> dict[str, str]:
         """Return the notes of a table that say so; none where there is no doubt."""
-        return {_NOTE: json.dumps([self.damage, self.findings])} if self else {}
+        parts = [self.damage, self.findings, *([self.rayless] if self.rayless else [])]
+        return {_NOTE: json.dumps(parts)} if self else {}
 
 
 NO_DOUBT = Doubts()
@@ -96,10 +107,10 @@ def read_doubts(path: FilePath, schema: schemas.Schema) -> Doubts:
     if not text:
         return Doubts()
     try:
-        damage, findings = json.loads(text)
+        damage, findings, *rayless = json.loads(text)
         found = tuple(Finding(*each) for each in findings)
+        return Doubts(tuple(damage), found, tuple(*rayless))
     except (ValueError, TypeError):
         raise StageError(
             f"{path}: damaged (its doubts are no list); delete it and run again"
         ) from (None)
-    return Doubts(tuple(damage), found)

@@ -66,6 +66,10 @@ def rate_elements(
     models = coefficients["plane" if is_planar(plan) else "space"]
     held = _find_held(plan)
     rated = {table: _rate_table(described[table], models, table, held) for table in NUMBERS}
+    if plan.doubted.rayless:
+        # what was learned with rays says nothing without
+        for of_table in rated.values():
+            of_table.forget(np.ones(len(of_table.p_true), bool))
     _doubt_walls(rated["walls"], plan, max_sigma_m)
     _doubt_openings(rated["openings"], plan)
     for table, of_table in rated.items():
@@ -103,9 +107,12 @@ class _Rated:
     def leave_out(self, corrected: Array | None) -> None:
         """Rate none that a person has looked at: nothing is left to verify, and rays say less."""
         if corrected is not None:
-            chosen = corrected != ""
-            self.p_true[chosen], self.verify[chosen] = np.nan, False
-            self.about[chosen], self.doubt[chosen], self.needs_person[chosen] = "", "", False
+            self.forget(corrected != "")
+
+    def forget(self, chosen: BoolArray) -> None:
+        """Know nothing of some elements (n,)."""
+        self.p_true[chosen], self.verify[chosen] = np.nan, False
+        self.about[chosen], self.doubt[chosen], self.needs_person[chosen] = "", "", False
 
 
 def _rate_table(
@@ -136,7 +143,11 @@ def _doubt_walls(rated: _Rated, plan: FloorPlan, max_sigma_m: float) -> None:
 
 def _doubt_openings(rated: _Rated, plan: FloorPlan) -> None:
     is_unknown = plan.openings["type"] == "gap"
-    rated.p_true[is_unknown], rated.verify[is_unknown] = 0.0, True
+    if plan.doubted.rayless:
+        # where no rays were recorded a pane may as well be a way out
+        is_unknown |= plan.openings["type"] == "glass"
+    rated.p_true[is_unknown] = np.nan if plan.doubted.rayless else 0.0
+    rated.verify[is_unknown] = True
     rated.about[is_unknown], rated.doubt[is_unknown] = KIND, "not known what it is"
     rated.needs_person[is_unknown] = False
     seen_m = centrelines_m(plan.faces)[plan.faces["state"] == "observed"]

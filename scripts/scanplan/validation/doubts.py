@@ -13,6 +13,8 @@ from scanplan.validation import doubt_words
 from scanplan.validation.confidence import END, EXISTENCE, KIND, NOT_CLOSED, PLACE, WIDTH
 from scanplan.validation.doubt_words import NEARLY
 
+NO_RAYS = "no rays were recorded"
+"""Why elements of some plans are not rated."""
 MOST = 20
 """Lines that a person reads of a list before anything else."""
 MARKS = {EXISTENCE: "?", KIND: "kind?", PLACE: "place?", END: "end?", WIDTH: "width?"}
@@ -135,7 +137,9 @@ def list_nearly(plan: FloorPlan) -> list[Doubt]:
 
 
 def list_unrated(plan: FloorPlan) -> list[str]:
-    """Return in a sentence that the stage failed that rates elements; nothing if it did not."""
+    """Return in a sentence why elements are not rated; nothing if they are."""
+    if plan.doubted.rayless:
+        return [f"how likely elements are is not known, as {NO_RAYS}"]
     told = plan.walls.get("doubt", np.empty(0, object))
     if len(told) == 0 or (told != UNRATED).any():
         return []

@@ -139,6 +139,10 @@ class DeskewedSurvey:
         """Return what could not be read so far, in sentences."""
         return self._survey.describe_damage()
 
+    def describe_rays(self) -> list[str]:
+        """Return what stands for rays where the recording has none, in sentences."""
+        return self._survey.describe_rays()
+
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""
         return self._survey.describe_gaps()

@@ -42,6 +42,11 @@ class Station:
     world_from_sensor: FloatArray
     read_blocks: Callable[[], Iterator[FloatArray]]
 
+    def read_in_world(self) -> Iterator[FloatArray]:
+        """Yield its points (n, 3) float64 where its pose puts them."""
+        for xyz_m in self.read_blocks():
+            yield se3.transform_points(self.world_from_sensor, xyz_m)
+
 
 class StationScans(UntimedScans):
     """Stations in the order of their files; each is thinned as it is read.
@@ -87,9 +92,7 @@ class StationScans(UntimedScans):
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return the thinned points of a station: see `posed_scans.PosedScans.read_cloud`."""
         station = self._stations[scan_id]
-        grid = AngularGrid()
-        for xyz_m in station.read_blocks():
-            grid.add(self._unit_m * xyz_m)
+        grid = _thin(station, self._unit_m)
         if grid.share_behind > _MOST_BEHIND:
             raise StageError(
                 f"{station.name}: in {grid.share_behind:.0%} of the directions from its scanner"
@@ -98,6 +101,29 @@ class StationScans(UntimedScans):
                 " a scan of its own, with its pose"
             )
         return grid.xyz_m, None
+
+
+def are_merged(stations: Sequence[Station]) -> bool:
+    """Return whether scans of one pose, or without any, are parts of a cloud in one frame.
+
+    Of one at least points lie behind others, seen from where its scanner is said to have stood.
+
+    Raises
+    ------
+    StageError
+        If one cannot be read.
+    """
+    poses = np.array([station.world_from_sensor for station in stations])
+    if len(stations) == 0 or not np.isfinite(poses).all() or np.ptp(poses, axis=0).max() > 0:
+        return False
+    return any(_thin(station).share_behind > _MOST_BEHIND for station in stations)
+
+
+def _thin(station: Station, unit_m: float = 1.0) -> AngularGrid:
+    grid = AngularGrid()
+    for xyz_m in station.read_blocks():
+        grid.add(unit_m * xyz_m)
+    return grid
 
 
 def _check_poses(stations: Sequence[Station], poses: FloatArray) -> None:
