@@ -24,7 +24,7 @@ StampedStream = tuple[tuple[str, ...], int]
 """What a small message tells, as (topic,) or (topic, parent, child), and its stamp."""
 
 _OF_DAMAGED = ("salvage", "max_damaged_share")
-_TUNED = ("pose_kind", "cloud_unit", "pose_unit")
+_TUNED = ("pose_kind", "storey", "cloud_unit", "pose_unit")
 """Of how a recording is read what stands under `advanced` in settings."""
 
 

@@ -40,7 +40,6 @@ def align_stamps(
 
     Parameters
     ----------
-    index : small_messages.SmallMessages
     source, cloud : topics.Topic
         Of poses or of transforms, and of the clouds.
     recording_starts_ns : sequence of int

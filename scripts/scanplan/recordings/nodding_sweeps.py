@@ -136,7 +136,6 @@ class NoddingSweeps(TakenAtOnce):
     ----------
     survey : recorded_survey.BagSurvey
         The sweeps.
-    nods : Nods
     """
 
     def __init__(self, survey: BagSurvey, nods: Nods) -> None:
@@ -181,6 +180,10 @@ class NoddingSweeps(TakenAtOnce):
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
         return self._survey.describe_damage()
+
+    def describe_rays(self) -> list[str]:
+        """Return nothing: rays are the laser's."""
+        return self._survey.describe_rays()
 
     def describe_gaps(self) -> list[str]:
         """Return whether its recordings lie far apart in time, as a sentence."""

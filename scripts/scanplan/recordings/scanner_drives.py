@@ -180,6 +180,10 @@ class ScannerDrives:
         """Return whether the recordings lie far apart in time, as a sentence."""
         return self._surveys[0].describe_gaps()
 
+    def describe_rays(self) -> list[str]:
+        """Return nothing: rays are the scanners'."""
+        return [said for survey in self._surveys for said in survey.describe_rays()]
+
     def describe_damage(self) -> list[str]:
         """Return what could not be read so far, in sentences."""
         losses = [loss for survey in self._surveys for loss in survey.describe_losses()]

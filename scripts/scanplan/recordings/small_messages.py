@@ -44,10 +44,6 @@ TransformKey = tuple[bool, str, str]
 class SmallMessages:
     """What one pass over the recordings collects; places are recorded in some unit.
 
-    Parameters
-    ----------
-    unit_m : float
-
     Attributes
     ----------
     poses : dict of str to list of PoseSample

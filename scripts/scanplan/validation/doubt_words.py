@@ -54,7 +54,6 @@ def say_where(plan: FloorPlan, room: int, place_m: FloatArray | None) -> str:
 
     Parameters
     ----------
-    plan : FloorPlan
     room : int
         Row of the room that it is at; -1 of none.
     place_m : (2,) float64 or None

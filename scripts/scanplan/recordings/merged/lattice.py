@@ -58,7 +58,6 @@ class ThinnedCloud:
 
     Parameters
     ----------
-    lattice : Lattice
     most : int
         Cubes.
     """

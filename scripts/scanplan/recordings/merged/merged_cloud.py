@@ -5,7 +5,7 @@ that what has no points may be open, or not scanned.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from scanplan.recordings.merged.lattice import Lattice, ThinnedCloud
 from scanplan.recordings.merged.views import RayCaster
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import UntimedScans
+from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
 
@@ -46,7 +47,6 @@ class MergedCloud(UntimedScans):
     ----------
     where : str
         The files, for errors.
-    sources : sequence of Blocks
     storey : int or None
         Its number, 0 the lowest; by default the one with most floor.
     **reading
@@ -59,10 +59,16 @@ class MergedCloud(UntimedScans):
     """
 
     def __init__(
-        self, where: str, sources: Sequence[Blocks], *, storey: int | None = None, **reading: Any
+        self,
+        where: str,
+        sources: Sequence[Blocks],
+        *,
+        storey: int | None = None,
+        units: Units = IN_METRES,
+        **reading: Any,
     ) -> None:
-        self._sources = sources
-        self._outline = _thin(where, sources, storeys.CELL_M)
+        self._sources = [partial(_read_metres, blocks, units.cloud_m) for blocks in sources]
+        self._outline = _thin(where, self._sources, storeys.CELL_M)
         columns = storeys.find_floor(self._outline.keys, self._outline.xyz_m[:, 2])
         self._storeys = storeys.find_storeys(columns)
         self._number = _choose_storey(where, self._storeys, storey)
@@ -136,6 +142,10 @@ class MergedCloud(UntimedScans):
             f" points, {len(self._places_m)} places to look from"
         )
         return RayCaster(cloud.keys, cloud.lattice.edge_m), cloud.xyz_m
+
+
+def _read_metres(read_blocks: Blocks, unit_m: float) -> Iterator[FloatArray]:
+    return (unit_m * block for block in read_blocks())
 
 
 def _thin(where: str, sources: Sequence[Blocks], edge_m: float) -> ThinnedCloud:

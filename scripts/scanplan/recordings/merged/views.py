@@ -42,7 +42,6 @@ class RayCaster:
             In metres from the cubes' origin, as the points are.
         way : (n, 3) float
             Unit vectors.
-        reach_m : float
         """
         begin, reach = from_m / self._edge_m, reach_m / self._edge_m
         ends = np.full(len(way), -1, np.int64)
