@@ -189,7 +189,7 @@ def test_poses_of_another_time(project, tmp_path):
         if e[0] == "/amcl_pose"
     ]
     ends_with_one_line(
-        project, written(tmp_path / "elsewhen", entries), "run.bag", "check the clocks"
+        project, written(tmp_path / "elsewhen", entries), "run.bag", "one clock"
     )
 
 
