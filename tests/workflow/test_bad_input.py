@@ -188,9 +188,7 @@ def test_poses_of_another_time(project, tmp_path):
         for e in bag_making.survey(maker, start_ns=bag_making.START_NS + 10**15)
         if e[0] == "/amcl_pose"
     ]
-    ends_with_one_line(
-        project, written(tmp_path / "elsewhen", entries), "run.bag", "one clock"
-    )
+    ends_with_one_line(project, written(tmp_path / "elsewhen", entries), "run.bag", "one clock")
 
 
 def test_clouds_of_nothing(project, tmp_path):
