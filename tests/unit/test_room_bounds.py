@@ -13,7 +13,7 @@ from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import room_bounds
 
-LIMITS = {"min_area_m2": 1.0, "unpaired_m": 0.1}
+LIMITS = {"min_area_m2": 1.0, "unpaired_m": 0.1, "max_door_m": 1.5}
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
 
 
@@ -158,6 +158,15 @@ def corridor_partings(unseen, others=()):
     return room_bounds.find_partings(
         *([*sides, *ends, *others], floor, track_m), max_width_m=1.5, planar=True, **LIMITS
     )
+
+
+@pytest.mark.parametrize(("max_width_m", "count"), [(2.2, 1), (1.5, 0)])
+def test_what_is_as_wide_as_an_opening_parts_rooms(max_width_m, count):
+    """A passage of 1.8 m between two halls, in no wall that was seen."""
+    halls = shapely.union_all([box(0, 0, 6, 8), box(6.2, 0, 12, 8), box(5.9, 3, 6.3, 4.8)])
+    track_m = np.array([[3.0, 4.0], [6.1, 4.0], [9.0, 4.0]])
+    found = room_bounds.find_partings([], halls, track_m, max_width_m=max_width_m, **LIMITS)
+    assert len(found) == count
 
 
 def test_the_stubs_of_a_door_in_a_corridor_part_it():

@@ -447,7 +447,8 @@ class _Survey:
         floor = self._floor_with(surfaces.furnished)
         partings = room_bounds.find_partings(
             *(surfaces.bounds, floor, self.track_m),
-            max_width_m=self.settings.openings.max_door_m,
+            max_width_m=self.settings.openings.max_opening_m,
+            max_door_m=self.settings.openings.max_door_m,
             min_area_m2=min_area_m2,
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,

@@ -90,6 +90,7 @@ def find_partings(
     track_m: FloatArray,
     *,
     max_width_m: float,
+    max_door_m: float,
     min_area_m2: float,
     unpaired_m: float,
     planar: bool = False,
@@ -112,7 +113,9 @@ def find_partings(
     track_m : (n, 2) float64
         Where sensors were.
     max_width_m : float
-        Of a door.
+        Of an opening: what is narrower than the floor on both sides, and no wider, parts it.
+    max_door_m : float
+        Of a door, which gaps in the line of a wall are measured by.
     min_area_m2 : float
         Of a room; less is not parted off.
     unpaired_m : float
@@ -138,9 +141,9 @@ def find_partings(
     partings = list(doors)
     gaps_m = []
     if planar:
-        gaps_m = _find_line_gaps(bounds, tree, free, max_width_m, unpaired_m, hidden)
+        gaps_m = _find_line_gaps(bounds, tree, free, max_door_m, unpaired_m, hidden)
     # shorter ones may be sides of what stands in a room
-    is_long = [planar and wall.length_m > 2 * max_width_m for wall in bounds]
+    is_long = [planar and wall.length_m > 2 * max_door_m for wall in bounds]
     walls = overlays.unite_areas(list(itertools.compress(strips, is_long)))
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
