@@ -72,9 +72,8 @@ def assemble_plan(
     )
     find_seen = find_dense = None
     if store.planar:
-        dense_ids = registered.scan_ids[fronts.choose_scans(poses[:, :2, 3])]
         find_dense = functools.partial(
-            *(ray_set.gather_rays, store.scans(dense_ids), sensors_m), planar=True, threads=threads
+            fronts.gather_dense_rays, store.scans, sensors_m, threads=threads
         )
         retained = store.scans(registered.scan_ids)
         find_seen = workers.begin_in_thread(

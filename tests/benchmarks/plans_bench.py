@@ -23,6 +23,7 @@ from scanplan.lab.evaluation import (
     wall_metrics,
 )
 from scanplan.plan import planning
+from scanplan.plan.model import fronts
 from scanplan.project import stage_settings
 from scanplan.rays import free_space, ray_set
 from scanplan.selection import stopping
@@ -203,10 +204,11 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
     sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
     rays = ray_set.gather_rays(found.store.scans(scan_ids), sensors_m, planar=found.store.planar)
     used = np.isin(found.walls["scan_id"], scan_ids)
-    find_seen = None
+    find_seen = find_dense = None
     if found.store.planar:
         retained = found.store.scans(found.registered.scan_ids)
         find_seen = functools.partial(free_space.find_seen_floor, retained, sensors_m)
+        find_dense = functools.partial(fronts.gather_dense_rays, found.store.scans, sensors_m)
     plan = planning.make_plan(
         {column: values[used] for column, values in found.walls.items()},
         rays,
@@ -216,6 +218,7 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
         poses[rows, :3, 2],
         found.registered.covariance[rows],
         find_seen=find_seen,
+        find_dense=find_dense,
     )
     return Plan(plan, rays.floor_z_m)
 

@@ -14,6 +14,7 @@ from scanplan.arrays.given_scans import GivenScans, PlacedScans, read_given, rea
 from scanplan.extraction import extractors, segments
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan, make_floorplan
+from scanplan.plan.model import fronts
 from scanplan.project import stage_settings
 from scanplan.rays import free_space, levels, ray_set
 from scanplan.recordings.motion import pose_kind
@@ -245,6 +246,7 @@ def _assemble(placed: PlacedScans, name: str, threads: int) -> ArrayPlan:
         placed.scans(scan_ids), placed.sensors_m, planar=placed.planar, threads=threads
     )
     find_seen = partial(free_space.find_seen_floor, placed.scans(), placed.sensors_m)
+    find_dense = partial(fronts.gather_dense_rays, placed.scans, placed.sensors_m, threads=threads)
     poses = placed.known.map_from_sensor
     plan = planning.make_plan(
         found,
@@ -255,6 +257,7 @@ def _assemble(placed: PlacedScans, name: str, threads: int) -> ArrayPlan:
         poses[rows, :3, 2],
         placed.known.covariance[rows],
         find_seen=find_seen if placed.planar else None,
+        find_dense=find_dense if placed.planar else None,
         threads=threads,
     )
     messages.check_plan(_ORIGIN, plan, n_segments, len(rows))

@@ -185,7 +185,7 @@ def make_plan(
         it. By default it is what the chosen ones saw.
     find_dense : callable, optional
         Returns the rays of planar scans from all along the way, chosen or not, see
-        `fronts.choose_scans`: panes are found by them. By default they are the chosen ones'.
+        `fronts.gather_dense_rays`: panes are found by them. By default they are the chosen ones'.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -194,7 +194,7 @@ def make_plan(
     Plan
         Without any row of faces or walls where nothing is supported enough.
     """
-    up = np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1)) if up is None else up
+    up = _stand_plumb(rays) if up is None else up
     if not rays.planar:
         rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
     errors_m = range_bias.estimate_range_bias(
@@ -209,8 +209,7 @@ def make_plan(
     dense = rays
     if find_dense is not None:
         dense = find_dense()
-        plumb = np.tile((0.0, 0.0, 1.0), (len(dense.scan_ids), 1))
-        dense = range_bias.remove_range_bias(dense, errors_m, plumb, threads)
+        dense = range_bias.remove_range_bias(dense, errors_m, _stand_plumb(dense), threads)
     survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
@@ -506,6 +505,11 @@ class _Survey:
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
         return free_space.union_on_grid([self.seen, *grounds]) if grounds else self.seen
+
+
+def _stand_plumb(rays: RaySet) -> FloatArray:
+    """Return the axis (s, 3) of each scan's sensor if it stands plumb."""
+    return np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1))
 
 
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:

@@ -1,7 +1,7 @@
 """Fronts of glass: lines along which rays that come square are answered, and others pass."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import Side, SurfaceCounts
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, FACE_M
-from scanplan.rays.ray_set import RaySet
+from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.types import FloatArray, IntArray
 
 _EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
@@ -37,6 +37,26 @@ class Fronts:
 
     panes: list[tuple[Line, float, float]]
     ways_m: list[FloatArray]
+
+
+def gather_dense_rays(
+    read_scans: Callable[[IntArray], Iterable[tuple[int, FloatArray]]],
+    sensors_m: Mapping[int, FloatArray],
+    *,
+    threads: int = 1,
+) -> RaySet:
+    """Return the rays of planar scans from all along the way, one scan of each place.
+
+    Parameters
+    ----------
+    read_scans : callable
+        Returns `scan_id` and points (n, 3) in the map frame of some scans.
+    sensors_m : dict of int to (3,) float64
+        The sensor's position by `scan_id`, increasing, of all retained scans.
+    """
+    rows = choose_scans(np.array(list(sensors_m.values()))[:, :2])
+    scan_ids = np.array(list(sensors_m))[rows]
+    return gather_rays(read_scans(scan_ids), sensors_m, planar=True, threads=threads)
 
 
 def choose_scans(sensors_m: FloatArray) -> IntArray:
