@@ -19,7 +19,7 @@ from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import deskew, trajectory
 from scanplan.recordings.recorded_survey import BagSurvey
-from scanplan.recordings.survey_protocol import NamedChain, Survey, TakenAtOnce
+from scanplan.recordings.survey_protocol import NamedChain, OfSurvey, Survey, TakenAtOnce
 from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
 
@@ -129,7 +129,7 @@ def part_nods(angle_rad: FloatArray, swing_rad: float) -> list[tuple[int, int]]:
     return [end for end, by in zip(ends, swung, strict=True) if by >= least]
 
 
-class NoddingSweeps(TakenAtOnce):
+class NoddingSweeps(TakenAtOnce, OfSurvey):
     """The nods of a laser; each is one scan, seen from where the laser is on the mount in the mean.
 
     Parameters
@@ -139,7 +139,7 @@ class NoddingSweeps(TakenAtOnce):
     """
 
     def __init__(self, survey: BagSurvey, nods: Nods) -> None:
-        self._survey = survey
+        super().__init__(survey)
         self._nods = nods
         # the sweep at which a mount turns back is of two nods
         used = np.unique(np.concatenate(nods.sweeps))
@@ -150,11 +150,6 @@ class NoddingSweeps(TakenAtOnce):
             f" {len(used):,} of {len(survey.stamps()):,} sweeps {len(nods.sweeps):,} scans in space"
             " are made, one of each nod"
         )
-
-    @property
-    def pose_kind(self) -> str:
-        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
-        return self._survey.pose_kind
 
     def stamps(self) -> IntArray:
         """Return the stamps of all nods, (n,) int64: of the sweep in the middle of each."""
@@ -176,18 +171,6 @@ class NoddingSweeps(TakenAtOnce):
     def motion_chains(self) -> list[NamedChain]:
         """Return all that states how the mount moved, the smoothest first and the poses last."""
         return [(name, self._end_on_mount(edges)) for name, edges in self._survey.motion_chains()]
-
-    def describe_damage(self) -> list[str]:
-        """Return what could not be read so far, in sentences."""
-        return self._survey.describe_damage()
-
-    def describe_rays(self) -> list[str]:
-        """Return nothing: rays are the laser's."""
-        return self._survey.describe_rays()
-
-    def describe_gaps(self) -> list[str]:
-        """Return whether its recordings lie far apart in time, as a sentence."""
-        return self._survey.describe_gaps()
 
     def scans(self, wanted: Iterable[int], damaged: DamagedClouds | None = None) -> Iterator[Scan]:
         """Iterate over the scans of the scan_ids in `wanted`, in scan_id order.

@@ -145,12 +145,17 @@ def read_cloud_file(path: Path, unit_m: float = 1.0) -> tuple[FloatArray, Array 
     fields = _read_fields(path)
     xyz_m = fields.get("positions", np.empty((0, 3)))
     if n_stated != len(xyz_m):
-        raise StageError(
-            f"{path}: damaged: states {n_stated} points, {len(xyz_m)} can be read; write it again"
-        )
+        raise say_cut_short(path, n_stated, len(xyz_m))
     times = [fields[name].reshape(-1) for name in TIME_FIELDS if name in fields]
     with np.errstate(over="ignore"):
         return unit_m * xyz_m.astype(np.float32), times[0] if times else None
+
+
+def say_cut_short(path: Path, n_stated: int, n_there: int) -> StageError:
+    """Return the refusal of a file that states more points, or fewer, than it holds."""
+    return StageError(
+        f"{path}: damaged: states {n_stated} points, {n_there} can be read; write it again"
+    )
 
 
 def _read_fields(path: Path) -> dict[str, Array]:

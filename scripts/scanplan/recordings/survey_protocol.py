@@ -75,3 +75,27 @@ class Survey(Protocol):
         `damaged` counts those that cannot be decoded; by default they may be a share of `wanted`.
         """
         ...
+
+
+class OfSurvey:
+    """What surveys have in common that are made of another one's scans."""
+
+    def __init__(self, survey: Survey) -> None:
+        self._survey = survey
+
+    @property
+    def pose_kind(self) -> str:
+        """Of which kind the poses are: see `pose_kind.find_pose_kind`."""
+        return self._survey.pose_kind
+
+    def describe_damage(self) -> list[str]:
+        """Return what could not be read so far, in sentences."""
+        return self._survey.describe_damage()
+
+    def describe_rays(self) -> list[str]:
+        """Return what stands for rays where the recording has none, in sentences."""
+        return self._survey.describe_rays()
+
+    def describe_gaps(self) -> list[str]:
+        """Return whether its recordings lie far apart in time, as a sentence."""
+        return self._survey.describe_gaps()

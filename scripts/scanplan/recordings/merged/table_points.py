@@ -89,7 +89,7 @@ def _read_rows(path: Path, begin: int, n_points: int, row: np.dtype) -> Iterator
             n_rows = min(_BLOCK, n_points - first)
             rows = np.fromfile(file, row, n_rows)
             if len(rows) != n_rows:
-                raise _cut_short(path, n_points, first + len(rows))
+                raise scan_folder.say_cut_short(path, n_points, first + len(rows))
             yield np.column_stack([rows[axis][:, 0].astype(np.float64) for axis in _AXES])
 
 
@@ -102,7 +102,7 @@ def _read_lines(
             n_lines = min(_BLOCK, n_points - first)
             lines = list(islice(file, n_lines))
             if len(lines) != n_lines:
-                raise _cut_short(path, n_points, first + len(lines))
+                raise scan_folder.say_cut_short(path, n_points, first + len(lines))
             try:
                 xyz_m = np.loadtxt(lines, usecols=columns, ndmin=2)
             except ValueError:
@@ -113,9 +113,3 @@ def _read_lines(
                     " point; write it again"
                 )
             yield xyz_m
-
-
-def _cut_short(path: Path, n_points: int, n_there: int) -> StageError:
-    return StageError(
-        f"{path}: damaged: states {n_points} points, {n_there} can be read; write it again"
-    )

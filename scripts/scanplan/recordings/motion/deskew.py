@@ -12,7 +12,7 @@ from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.motion.trajectory import SensorMotion
-from scanplan.recordings.survey_protocol import NamedChain, Survey
+from scanplan.recordings.survey_protocol import NamedChain, OfSurvey, Survey
 from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
 
@@ -104,7 +104,7 @@ def deskew_scan(scan: Scan, motion: SensorMotion) -> FloatArray | None:
     return None if control is None else move_to_stamp(scan.xyz_m, time_s, control)
 
 
-class DeskewedSurvey:
+class DeskewedSurvey(OfSurvey):
     """A survey whose scans are free of the motion during their sweeps.
 
     A scan is left as recorded where its points carry no time, where their times cannot be those of
@@ -113,7 +113,7 @@ class DeskewedSurvey:
     """
 
     def __init__(self, survey: Survey, motion: SensorMotion) -> None:
-        self._survey = survey
+        super().__init__(survey)
         self._motion = motion
 
     @property
@@ -126,26 +126,9 @@ class DeskewedSurvey:
         """How the driver writes the time of a point, or None if it does not."""
         return self._survey.sweep_times
 
-    @property
-    def pose_kind(self) -> str:
-        """Of which kind the poses are."""
-        return self._survey.pose_kind
-
     def stamps(self) -> IntArray:
         """Return the stamps of all clouds, (n,) int64, in scan_id order."""
         return self._survey.stamps()
-
-    def describe_damage(self) -> list[str]:
-        """Return what could not be read so far, in sentences."""
-        return self._survey.describe_damage()
-
-    def describe_rays(self) -> list[str]:
-        """Return what stands for rays where the recording has none, in sentences."""
-        return self._survey.describe_rays()
-
-    def describe_gaps(self) -> list[str]:
-        """Return whether its recordings lie far apart in time, as a sentence."""
-        return self._survey.describe_gaps()
 
     def pose_edges(self) -> list[FrameEdge]:
         """Return the chain of transforms whose product is world_from_sensor."""
