@@ -103,7 +103,7 @@ def find_front_rows(walls: Sequence[PlanWall], rays: RaySet) -> list[FrontRow]:
 
 
 def extend_row(row: FrontRow, others: intersections.SpanArrays) -> FrontRow:
-    """Return a row that goes on to the farthest of what crosses its line within reach."""
+    """Return a row that goes on to the farthest of what crosses its line, or would go on to it."""
     place_m = intersections.find_crossings(row.line, others, reach_m=_REACH_M).place_m
     near_m = place_m[(place_m >= row.low_m - _REACH_M) & (place_m <= row.high_m + _REACH_M)]
     return replace(

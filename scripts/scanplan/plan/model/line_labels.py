@@ -20,7 +20,6 @@ NOWHERE_M = np.empty((0, 2))
 NEARLY = 0.3
 """Least probability of what was nearly drawn: of such things a fourth is there (tuning half)."""
 _MAY_BE = (priors.DOOR, priors.WINDOW, priors.GLASS, priors.SHUT)
-_LEAST_M = 0.4  # of what may be an opening, as narrow as any of `priors` is
 _N_KINDS = len(priors.KINDS)
 _Reduction = Callable[..., FloatArray]
 
@@ -70,7 +69,7 @@ def label_line(
     ----------
     counts : surface_counts.SurfaceCounts
     line : int
-        What it is: `priors.INNER`, `OUTER` or `FRONT`.
+        What it is: `priors.INNER`, `OUTER`, `FRONT` or `ROW`.
     goes_on : (bool, bool)
         Whether it begins, and ends, beyond what was seen of it, at the next wall.
     crossed_m : (n, 2) float64, optional
@@ -124,7 +123,7 @@ def find_nearly(shares: FloatArray, places_m: FloatArray) -> Iterator[Stretch]:
         is_likely = np.concatenate([[False], shares[:, kind] >= NEARLY, [False]])
         for first, last in np.flatnonzero(np.diff(is_likely)).reshape(-1, 2).tolist():
             low_m, high_m = places_m[[first, last]].tolist()
-            if high_m - low_m >= _LEAST_M:
+            if high_m - low_m >= min(priors.LEAST_M.values()):
                 p = float(shares[first:last, kind].max())
                 yield Stretch(priors.KINDS[kind], low_m, high_m, np.nan, np.nan, p)
 

@@ -63,14 +63,15 @@ def label_surfaces(
     found = observe_surfaces([part for part, _ in parts], rays)
     p = things.weigh_things(found)
     kinds = things.choose_kinds(p)
+    weighed = list(zip(parts, kinds, p[:, things.WALL].tolist(), strict=True))
     kept = [
-        (replace(part, p_wall=float(p_wall)), top_m)
-        for (part, top_m), kind, p_wall in zip(parts, kinds, p[:, things.WALL], strict=True)
+        (replace(part, p_wall=p_wall), top_m)
+        for (part, top_m), kind, p_wall in weighed
         if kind == things.WALL
     ]
     nearly = [
         Nearly("wall", part.ends, p_wall)
-        for (part, _), kind, p_wall in zip(parts, kinds, p[:, things.WALL].tolist(), strict=True)
+        for (part, _), kind, p_wall in weighed
         if kind != things.WALL and p_wall >= line_labels.NEARLY
     ]
     kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
@@ -78,7 +79,7 @@ def label_surfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end
         tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
-        leaves_m=[p.ends for (p, _), k in zip(parts, kinds, strict=True) if k == things.LEAF],
+        leaves_m=[part.ends for (part, _), kind, _ in weighed if kind == things.LEAF],
         nearly=[*nearly, *(near for wall, _ in kept for near in wall.nearly)],
     )
 
