@@ -100,6 +100,15 @@ class TestOpenings:
         assert row["window_lintel_error_m"] == pytest.approx(0)
         assert row["window_sill_error_m"] == pytest.approx(0.9)
 
+    def test_a_pane_is_right_where_most_of_it_is_a_wall_of_glass(self, tmp_path):
+        scene = scene_making.scene(tmp_path)
+        start_m, end_m = scene.inner_m[0]
+        of_glass = scene_making.replace_scene(scene, glass=np.arange(len(scene.inner_m)) == 0)
+        beyond_m = end_m + (end_m - start_m) * 2
+        panes = [("glass", [start_m, end_m]), ("glass", [start_m, beyond_m])]
+        for truth, share in ((scene, 0.0), (of_glass, 0.5)):
+            assert score_openings(truth, panes).measures["window_precision"] == share
+
     def test_a_window_drawn_as_a_door_is_missed_and_wrong(self, tmp_path):
         scene = scene_making.scene(tmp_path, WINDOW)
         score = score_openings(scene, [DOOR, ("door", [(1, -0.1), (2, -0.1)])])

@@ -139,8 +139,8 @@ def _is_same_group(plan: DrawnPlan, true: TrueOpenings, pairs: Pairs) -> BoolArr
 def _judge(plan: DrawnPlan, scene: Scene, pairs: Pairs, same: BoolArray) -> Array:
     """Return verdicts (o,): right, wrong_type, other (no opening there), unknown.
 
-    A passage in no wall is right wherever floor is free: where rooms part there is a choice.
-    Unknown are gaps; and, of a truth that is a part, what lies at none of its rooms, or all where
+    A passage in no wall is right wherever floor is free: where rooms part there is a choice. A pane
+    is right where a wall of glass is, most of it. Unknown are gaps; and, of a truth that is a part, what lies at none of its rooms, or all where
     it has no openings.
     """
     free = overlays.unite_areas(scene.rooms)
@@ -151,6 +151,7 @@ def _judge(plan: DrawnPlan, scene: Scene, pairs: Pairs, same: BoolArray) -> Arra
     verdicts = np.full(len(plan.type), "other", object)
     verdicts[pairs.true_of >= 0] = "wrong_type"
     verdicts[same | ((plan.type == "passage") & is_free)] = RIGHT
+    verdicts[(plan.type == "glass") & _are_at_glass(lines, scene)] = RIGHT
     if not scene.is_whole:
         apart_m = shapely.distance(lines, overlays.unite_areas(scene.entered_rooms))
         is_elsewhere = ~(np.nan_to_num(apart_m, nan=np.inf) <= _ASKED_M)
@@ -158,6 +159,15 @@ def _judge(plan: DrawnPlan, scene: Scene, pairs: Pairs, same: BoolArray) -> Arra
         verdicts[is_elsewhere & (verdicts == "other")] = "unknown"
     verdicts[plan.type == GAP] = "unknown"
     return verdicts
+
+
+def _are_at_glass(lines: Array, scene: Scene) -> BoolArray:
+    """Return which lines (n,) lie for the greater part in walls of glass."""
+    if not scene.glass.any():
+        return np.zeros(len(lines), bool)
+    walls = overlays.buffer_shapes(line_shapes_of(scene.inner_m[scene.glass]), _ACROSS_M)
+    inside = overlays.intersect_lines(lines, overlays.unite_areas(walls))
+    return np.asarray(2 * shapely.length(inside) > shapely.length(lines))
 
 
 def _measure_sizes(
