@@ -16,7 +16,7 @@ def line_through(x0, y0, x1, y1):
     return Line(start, np.array([-way[1], way[0]]) / np.hypot(*way))
 
 
-def observation(line, occupied=(), free=(), low=(), *, lost=(), planar=False):
+def observation(line, occupied=(), free=(), low=(), *, planar=False):
     """Return what is seen of a line.
 
     Rows of `occupied` are along, height, and, if given, offset before the line and scan; rows of
@@ -37,7 +37,6 @@ def observation(line, occupied=(), free=(), low=(), *, lost=(), planar=False):
         low_m=low_m,
         low_z_m=low_z_m,
         planar=planar,
-        lost_m=np.array(lost, float).reshape(-1, 2),
     )
 
 

@@ -80,15 +80,6 @@ def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
     assert stretch.high_m == pytest.approx(2.0, abs=0.011)
 
 
-def test_a_pane_is_no_wall():
-    pane = observation(AXIS, row(0, 3), lost=[(1.0, 2.0)])
-    spans = [
-        (s.low_m, s.high_m)
-        for s in intervals.find_face_intervals(pane, **(LIMITS | {"max_gap_m": 0.0}))
-    ]
-    np.testing.assert_allclose(spans, [(0, 1), (2, 3)], atol=0.03)
-
-
 def test_nothing_seen_is_no_stretch():
     assert found([]) == []
 
@@ -153,22 +144,3 @@ def test_beyond_what_is_looked_for_rays_in_the_plane_tell_where_they_go_by(plana
     assert ((passed_m > 3.4) & (passed_m < 4.6)).all()
     assert seen.covers(seen.low_end_m, seen.high_end_m)
     assert not seen.covers(seen.low_end_m, seen.high_end_m + 0.01)
-
-
-def test_a_pane_is_looked_at_beyond_a_pier_in_it():
-    """A hall, 12 m by 4 m, whose south side is glass from x = 2 m on, but for a pier at 4 m."""
-    turns_rad = np.radians(np.arange(0.25, 360, 0.5))
-    ways = np.column_stack([np.cos(turns_rad), np.sin(turns_rad)])
-    scans = []
-    for sensor_m in [(x, 2.0) for x in np.arange(1.0, 11.5, 0.5)]:
-        over = (np.where(ways > 0, (12.0, 4.0), 0.0) - sensor_m) / ways
-        ends_m = sensor_m + over.min(axis=1)[:, None] * ways
-        is_glass = (ends_m[:, 1] < 0.01) & (ends_m[:, 0] > 2) & (np.abs(ends_m[:, 0] - 4) > 0.3)
-        ends_m = np.column_stack([ends_m[~is_glass], np.full((~is_glass).sum(), 0.3)])
-        scans.append(((*sensor_m, 0.3), ends_m))
-    looked = ray_making.rays(*scans, planar=True)
-    seen = intervals.observe_along(looked, AXIS, 0.0, 2.0, band_m=BAND_M, reach_m=2.0)
-    lost_m = seen.lost_m - seen.line.along_m(np.zeros(2))
-    # without the pier nothing beyond 4 m was looked at
-    np.testing.assert_allclose(lost_m[:, 0], (2, 4.3), atol=0.25)
-    assert lost_m[1, 1] > 8

@@ -80,14 +80,6 @@ def test_a_floor_or_what_stands_on_it_is_no_sill(low):
     assert gap.sill_m == 0
 
 
-@pytest.mark.parametrize(
-    ("lost", "state"), [((1.05, 1.6), openings.OPEN), ((1.05, 1.3), openings.CLOSED)]
-)
-def test_where_rays_go_and_do_not_come_back_there_is_an_opening(lost, state):
-    line = seen([], [], lost=[lost])
-    assert classify(1.0, 1.9, [line]).state == state
-
-
 def test_a_wide_opening_is_a_passage():
     gap = replace(judge([], grid(1, 2.8, 0.1, 1.0), high=2.8), kind="door")
     assert gap.type_name(SETTINGS.max_door_m) == "passage"

@@ -11,7 +11,8 @@ from scanplan.plan.tolerances import (
     LOW_PERCENT,
     NOISE_M,
 )
-from scanplan.rays.face_observation import FaceObservation, filled_share
+from scanplan.rays.face_observation import FaceObservation
+from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.tolerances import FEW
 from scanplan.types import FloatArray
 
@@ -56,7 +57,7 @@ def _step_z_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: floa
     """Return the heights of what stands near the floor below the lowest ray, if all along."""
     low = seen.low_between(low_m, high_m)
     raised = (seen.low_z_m[low] > NOISE_M) & (seen.low_z_m[low] < lowest_m)
-    share = filled_share(seen.low_m[low][raised], low_m, high_m)
+    share = _filled_share(seen.low_m[low][raised], low_m, high_m)
     return seen.low_z_m[low][raised] if share >= ALONG_SHARE else np.empty(0)
 
 
@@ -101,3 +102,10 @@ def estimate_lintel_m(
 def robust_highest_m(z_m: FloatArray) -> float:
     """Return the height that not just one or two of heights (n,), n >= 3, reach."""
     return float(np.partition(z_m, -FEW)[-FEW])
+
+
+def _filled_share(places_m: FloatArray, low_m: float, high_m: float) -> float:
+    """Return the share of the columns between two places that hold any of sorted places."""
+    inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
+    columns = max(round((high_m - low_m) / CELL_M), 1)
+    return len(np.unique(((inside_m - low_m) / CELL_M).astype(np.int64))) / columns

@@ -141,8 +141,6 @@ def classify_gap(
     # a planar scanner sends one ray through a column: few scans make few, and columns count
     least_rays = FEW if faces[0].planar else ENOUGH_RAYS
     is_open = n_rays >= least_rays and open_share >= least_share
-    # rays went in and did not come back: through glass, or out of the building
-    is_open |= max(side.lost_share for side in shown) >= _OPEN_SHARE
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     is_hidden = below_wall and np.isnan(sill_m)
     is_solid = open_share <= _CLOSED_SHARE or n_rays < FEW
@@ -160,12 +158,6 @@ def classify_gap(
     return Opening(float(low_m), float(high_m), state, n_rays, sill_m, lintel_m, below_wall)
 
 
-def _lost_share(face: FaceObservation, span_m: FloatArray) -> float:
-    """Return the share of the width with missing returns."""
-    inside_m = [min(high_m, span_m[1]) - max(low_m, span_m[0]) for low_m, high_m in face.lost_m]
-    return float(sum(max(m, 0.0) for m in inside_m) / (span_m[1] - span_m[0]))
-
-
 def _crossed_share(face: FaceObservation, low_m: float, high_m: float) -> float:
     """Return on what share of the width more rays of planar scans go through than end there."""
     edges_m = np.linspace(low_m, high_m, max(round((high_m - low_m) / SCAN_COLUMN_M), 1) + 1)
@@ -181,23 +173,20 @@ def _first_known(values_m: Iterable[float]) -> float:
 class _GapEvidence:
     """What rays show of a gap on one side of a wall.
 
-    How many went through, on what share of the width, on what share none came back, sill, lintel,
-    and whether wall is above.
+    How many went through, on what share of the width, sill, lintel, and whether wall is above.
     """
 
     n_rays: int = 0
     open_share: float = 0.0
-    lost_share: float = 0.0
     sill_m: float = math.nan
     lintel_m: float = math.nan
     below_wall: bool = False
 
 
 def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float) -> _GapEvidence:
-    lost_share = _lost_share(face, span_m)
     low_m, high_m = span_m[0] + NOISE_M, span_m[1] - NOISE_M
     if high_m <= low_m:
-        return _GapEvidence(lost_share=lost_share)
+        return _GapEvidence()
     free = face.free_between(low_m, high_m)
     if face.planar:
         open_share = _crossed_share(face, low_m, high_m)
@@ -205,7 +194,7 @@ def _observe_gap(face: FaceObservation, span_m: FloatArray, door_height_m: float
         is_crossed = face.raster.is_crossed(door_height_m)
         n_crossed = is_crossed[face.raster.between(low_m, high_m)].sum()
         open_share = min(float(n_crossed / max(round((high_m - low_m) / CELL_M), 1)), 1.0)
-    evidence = _GapEvidence(free.stop - free.start, open_share, lost_share)
+    evidence = _GapEvidence(free.stop - free.start, open_share)
     if face.planar or evidence.n_rays < ENOUGH_RAYS:
         return evidence
     free_z_m = face.free_z_m[free]

@@ -355,7 +355,7 @@ class _Survey:
         )
         glass = find_fronts(labelled.walls, self.dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(
-            *(labelled.walls, [*traced.panes, *glass.panes]),
+            *(labelled.walls, glass.panes),
             min_length_m=min_width_m,
             unpaired_m=unpaired_m,
         )

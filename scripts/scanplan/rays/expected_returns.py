@@ -27,8 +27,6 @@ Their rays are few, and much stands before the surface.
 """
 
 _GRAZING = np.tan(GRAZING_RAD)
-_LEAST_RAYS = 20.0  # half of so many are not lost by chance
-DEEP_M = 0.6  # no wall is thicker
 ALL_HEIGHTS_M = (-np.inf, np.inf)
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
@@ -47,42 +45,15 @@ class SentRays:
         That ended before the surface.
     returned : array
         That ended at the surface or beyond.
-    in_wall : array
-        Of these, at the surface or no further behind it than a wall is thick.
     width : int
         So many columns around each are judged together.
-    least_rays : float
-        Where fewer are to be expected nothing is said.
-    lone_rays : float
-        So many say something however few scans sent them.
     """
 
     view: IntArray
     expected: FloatArray
     occluded: IntArray
     returned: IntArray
-    in_wall: IntArray
     width: int = _WIDTH
-    least_rays: float = _LEAST_RAYS
-    lone_rays: float = np.inf
-
-    def reached(self, *, least_scans: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return how many rays reached the columns (n,) of one surface and those around each.
-
-        In all, of these those that came back, and those that ended in the wall.
-
-        NaN where too few are to be expected for anything to be said, or fewer scans than
-        `least_scans` sent any and these not `lone_rays`.
-        """
-        expected, occluded, clear = self._sum_clear()
-        reached = ((expected - occluded) * clear).sum(axis=0)
-        returned = (sum_neighbours(self.returned, self.width) * clear).sum(axis=0)
-        in_wall = (sum_neighbours(self.in_wall, self.width) * clear).sum(axis=0)
-        n_scans = (clear & (expected >= FEW)).sum(axis=0)
-        enough = (n_scans >= least_scans) & (reached >= self.least_rays)
-        enough |= reached >= self.lone_rays
-        known = [np.where(enough, rows, np.nan) for rows in (reached, returned, in_wall)]
-        return known[0], known[1], known[2]
 
     def missing(self) -> FloatArray:
         """Return how many rays of each single view that reached a column are nowhere, (v, n)."""
@@ -100,12 +71,6 @@ class SentRays:
         expected = sum_neighbours(self.expected, self.width)
         occluded = sum_neighbours(self.occluded, self.width)
         return expected, occluded, occluded < STRAY_SHARE * expected
-
-    def lost(self) -> FloatArray:
-        """Return how many of the rays that reached the columns (n,) of one surface are nowhere."""
-        reached, returned, _ = self.reached(least_scans=2)
-        n_columns = sum_neighbours(np.ones((1, self.expected.shape[1])), self.width)[0]
-        return np.nan_to_num(np.maximum(reached - returned, 0.0)) / n_columns
 
 
 def count_sent_rays(
@@ -149,16 +114,14 @@ def count_sent_rays(
     row = np.cumsum(is_looking) - 1
     cell = row.take(view.take(rows)) * count + np.minimum(column, count - 1)
     is_returned = behind_m >= -ON_M
-    kinds = (~is_returned, is_returned, is_returned & (behind_m <= DEEP_M))
-    occluded, returned, in_wall = (
-        np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape) for kind in kinds
+    occluded, returned = (
+        np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape)
+        for kind in (~is_returned, is_returned)
     )
     # of one beam there are few; as many columns on either side
     width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
-    # of a planar scanner it is known which beams it sent, and walls return nearly all
-    least, lone = (_LEAST_RAYS / 2, _LEAST_RAYS) if rays.planar else (_LEAST_RAYS, np.inf)
     (looking,) = np.nonzero(is_looking)
-    return SentRays(looking, expected, occluded, returned, in_wall, width, least, lone)
+    return SentRays(looking, expected, occluded, returned, width)
 
 
 def expect_returns(

@@ -1,23 +1,21 @@
 """Ray evidence of all scans on the surface of one line.
 
-Returns, rays through it, glass, and the raster of these.
+Returns, rays through it, and the raster of these.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from scanplan.geometry.lines import Line
-from scanplan.rays import expected_returns, face_raster
-from scanplan.rays.face_raster import CELL_M, FaceRaster
-from scanplan.rays.face_rays import FaceRays, cast_at_face
+from scanplan.rays import face_raster
+from scanplan.rays.face_raster import FaceRaster
+from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, ON_M, SKIRTING_M, STRETCH_M
+from scanplan.rays.tolerances import BEHIND_M, SKIRTING_M
 from scanplan.types import FloatArray, IntArray
-
-_GLASS_HEIGHTS_M = ((0.2, 0.7), (0.9, 1.6))  # skirting to sill; above sills, below low lintels
 
 
 @dataclass(frozen=True)
@@ -58,9 +56,6 @@ class FaceObservation:
     low_m, low_z_m : (f,) float64
         Returns at it that are too low for a wall: a sill, or clutter.
     planar : bool
-    lost_m : (n, 2) float64
-        From where to where too few of the rays that reach it come back for what is opaque: glass,
-        or nothing.
     low_end_m, high_end_m : float
         From where to where rays were gathered: of what is beyond nothing is known.
     """
@@ -76,7 +71,6 @@ class FaceObservation:
     low_m: FloatArray
     low_z_m: FloatArray
     planar: bool
-    lost_m: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     low_end_m: float = -math.inf
     high_end_m: float = math.inf
 
@@ -90,30 +84,6 @@ class FaceObservation:
             span_m=(places_m.min(initial=0.0), places_m.max(initial=0.0)),
             planar=self.planar,
         )
-
-    @property
-    def framed_m(self) -> FloatArray:
-        """The panes (k, 2) that returns of any height are at, along most of their length.
-
-        Glass has a frame, a sill or a lintel; a line that merely goes on before a pane has none.
-        A planar scanner sees none of them, but for mullions: there it is what a pane itself returns
-        now and then, all along but for its jambs.
-        """
-        returns_m = np.sort(np.concatenate([self.occupied_m, self.low_m]))
-        is_pane = [self._is_framed(returns_m, *span_m) for span_m in self.lost_m.tolist()]
-        return self.lost_m[np.array(is_pane, bool)]
-
-    def _is_framed(self, returns_m: FloatArray, low_m: float, high_m: float) -> bool:
-        # a pane's frame shows along half of it at least
-        if not self.planar:
-            return 2 * filled_share(returns_m, low_m, high_m) >= 1
-        # what is close to the ends may be of jambs, and fewer stretches of somebody in a way
-        low_m, high_m = low_m + ON_M, high_m - ON_M
-        if high_m - low_m < FEW * STRETCH_M:
-            return False
-        whole_m = math.ceil(round((high_m - low_m) / STRETCH_M, 6)) * STRETCH_M
-        inside_m = returns_m[returns_m < high_m]
-        return 2 * filled_share(inside_m, low_m, low_m + whole_m, STRETCH_M) >= 1
 
     def covers(self, low_m: float, high_m: float) -> bool:
         """Return whether rays were gathered all the way between two places."""
@@ -145,9 +115,7 @@ def observe_face(
         Returns this near to the line are at its surface; a ray goes through it that ends farther
         behind than that and what poses err by.
     """
-    face = cast_at_face(
-        *(rays, line, low_m, high_m), at_m=band_m, occluded_within_m=expected_returns.NEAR_M
-    )
+    face = cast_at_face(rays, line, low_m, high_m, at_m=band_m, occluded_within_m=0.0)
     is_free = face.is_free(band_m + BEHIND_M)
     # most rays end before the surface and are not asked for by their place: sorting is for the rest
     met = np.flatnonzero(face.is_occupied | is_free)
@@ -171,7 +139,6 @@ def observe_face(
         low_m=face.along_m[low],
         low_z_m=face.height_m[low],
         planar=rays.planar,
-        lost_m=_find_lost(rays, face, low_m, high_m),
         low_end_m=low_m,
         high_end_m=high_m,
     )
@@ -198,34 +165,6 @@ def look_beyond(
         low_end_m=low_m,
         high_end_m=high_m,
     )
-
-
-def filled_share(
-    places_m: FloatArray, low_m: float, high_m: float, column_m: float = CELL_M
-) -> float:
-    """Return the share of the columns between two places that hold any of sorted places."""
-    inside_m = places_m[np.searchsorted(places_m, low_m) : np.searchsorted(places_m, high_m)]
-    columns = max(round((high_m - low_m) / column_m), 1)
-    return len(np.unique(((inside_m - low_m) / column_m).astype(np.int64))) / columns
-
-
-def _find_lost(rays: RaySet, face: FaceRays, low_m: float, high_m: float) -> FloatArray:
-    """Return the spans (n, 2) where less than half of the rays return that reach a surface.
-
-    A wall below a window is wall, and so is one above an oven: both bands of height have to show
-    it; planar scans have one. Where few returns are to be expected nothing is said.
-    """
-    count = max(int(np.ceil((high_m - low_m) / CELL_M)), 1)
-    is_lost = np.full(count, True)
-    bands_m = (expected_returns.ALL_HEIGHTS_M,) if rays.planar else _GLASS_HEIGHTS_M
-    # of a drive with a scan each metre few look at a gap
-    least_scans = 2 if rays.planar else FEW
-    for heights_m in bands_m:
-        if is_lost.any():
-            sent = expected_returns.count_sent_rays(rays, face, low_m, count, CELL_M, heights_m)
-            reached, returned, _ = sent.reached(least_scans=least_scans)
-            is_lost &= 2 * returned < reached  # of any wall half return
-    return face_raster.find_stretches(is_lost, low_m)
 
 
 def _between(places_m: FloatArray, low_m: float, high_m: float) -> slice:

@@ -25,7 +25,6 @@ LEAST_OPEN_COLUMNS = 2
 """A single column may be opened by what points at its edges leave out, or pass beside a way."""
 
 _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more is another face
-_MOST_DOUBLINGS = 3  # of the reach beyond an end: panes are shorter than that
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,18 +77,7 @@ def observe_along(
     reach_m : float, >= 0
         How far beyond its ends more of it is looked for.
     """
-    own_m = (low_m, high_m)
-    beyond_m = np.full(2, reach_m)
-    observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
-    for _ in range(_MOST_DOUBLINGS):
-        # refitted, the line's own ends are as far from those of what was observed as before
-        ends_m = zip(span_m + beyond_m * np.array([1, -1]), span_m, strict=True)
-        is_in_glass = np.array([_leads_into_glass(observation, *pair_m) for pair_m in ends_m])
-        if not is_in_glass.any():
-            break
-        # a pane is observed as a whole
-        beyond_m = np.where(is_in_glass, 2 * beyond_m, beyond_m)
-        observation, span_m = _observe_refitted(rays, line, own_m, beyond_m, band_m)
+    observation, span_m = _observe_refitted(rays, line, (low_m, high_m), reach_m, band_m)
     if not rays.planar:
         return observation
     # where a wall ends it is asked whether rays go by; what returns there is of other lines
@@ -97,23 +85,11 @@ def observe_along(
     return look_beyond(observation, rays, *span_m, band_m=band_m)
 
 
-def _leads_into_glass(seen: FaceObservation, inner_m: float, end_m: float) -> bool:
-    """Return whether glass is at an end of what was observed, or along most of what leads there.
-
-    Of mullions a planar scanner sees a few returns, which part a pane's rays that are lost.
-    """
-    if np.abs(seen.lost_m - end_m).min(initial=np.inf) < END_M:
-        return True
-    low_m, high_m = sorted((inner_m, end_m))
-    lost_m = np.clip(seen.lost_m, low_m, high_m)
-    return seen.planar and bool(np.ptp(lost_m, axis=1).sum() > (high_m - low_m) / 2)
-
-
 def _observe_refitted(
-    rays: RaySet, line: Line, own_m: tuple[float, float], beyond_m: FloatArray, band_m: float
+    rays: RaySet, line: Line, own_m: tuple[float, float], reach_m: float, band_m: float
 ) -> tuple[FaceObservation, FloatArray]:
-    """Return what is seen of a refitted line up to `beyond_m` (2,) beyond its own, and the span."""
-    span_m = own_m[0] - beyond_m[0], own_m[1] + beyond_m[1]
+    """Return what is seen of a refitted line, up to a reach beyond its own ends, and the span."""
+    span_m = own_m[0] - reach_m, own_m[1] + reach_m
     near = cast_at_face(rays, line, *own_m, at_m=band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
     if not rays.planar:
@@ -162,7 +138,7 @@ def find_face_intervals(
 
     Columns with points, joined over gaps that no ray went through.
 
-    Glass is no wall, nor is what planar scans look through along most of its length.
+    What planar scans look through along most of its length is no wall.
 
     Parameters
     ----------
@@ -183,7 +159,7 @@ def find_face_intervals(
     if len(seen.occupied_m) == 0:
         return []
     raster = seen.raster
-    is_foreign = _is_within(raster, [*foreign_m, *seen.lost_m])
+    is_foreign = _is_within(raster, foreign_m)
     is_solid = raster.is_solid(door_height_m) & ~is_foreign
     is_opened = raster.is_opened(door_height_m)
     intervals = []

@@ -10,7 +10,6 @@ from functools import partial
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
 from scanplan.plan.faces.face_arrangement import Faces
@@ -36,14 +35,11 @@ class TracedFaces:
     n_lines : int
     n_dropped : int
         Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
-    panes : list of (lines.Line, float, float)
-        From where to where along a line there is glass.
     """
 
     faces: list[FaceInterval]
     n_lines: int
     n_dropped: int
-    panes: list[tuple[Line, float, float]]
 
 
 def trace_faces(
@@ -112,11 +108,6 @@ def trace_faces(
         faces=faces,
         n_lines=len(observations),
         n_dropped=len(observations) - n_traced,
-        panes=[
-            (seen.line, low_m, high_m)
-            for seen in observations
-            for low_m, high_m in seen.framed_m.tolist()
-        ],
     )
 
 

@@ -140,8 +140,8 @@ def _judge(plan: DrawnPlan, scene: Scene, pairs: Pairs, same: BoolArray) -> Arra
     """Return verdicts (o,): right, wrong_type, other (no opening there), unknown.
 
     A passage in no wall is right wherever floor is free: where rooms part there is a choice. A pane
-    is right where a wall of glass is, most of it. Unknown are gaps; and, of a truth that is a part, what lies at none of its rooms, or all where
-    it has no openings.
+    is right if most of it lies in a wall of glass. Unknown are gaps; and, of a truth that is a
+    part, what lies at none of its rooms, or all where it has no openings.
     """
     free = overlays.unite_areas(scene.rooms)
     lines = line_shapes_of(plan.openings_m)
