@@ -34,6 +34,36 @@ def with_door(made, low_m, high_m, kind="door"):
     return replace(opened, openings=[replace(o, kind=kind) for o in opened.openings])
 
 
+class TestBlocks:
+    RACK = ((0, 0), (0, 0.8), (5, 0.8), (5, 0), (0, 0))
+
+    def sides(self, turn_rad=0.0):
+        """Sides of a rack of 5 m by 0.8 m, seen from outside, the first 5 cm from the others."""
+        c, s = math.cos(turn_rad), math.sin(turn_rad)
+        corners_m = np.array(self.RACK) @ np.array([[c, s], [-s, c]])
+        sides = [wall(*a, *b, NAN) for a, b in pairwise(corners_m)]
+        return [replace(sides[0], low_m=sides[0].low_m + 0.05), *sides[1:]]
+
+    @pytest.mark.parametrize("turn_rad", [0.0, 0.6])
+    def test_a_rack_is_as_deep_as_it_is_whichever_way_it_stands(self, turn_rad):
+        walls = [*self.sides(turn_rad), wall(-3, -3, 12, -3, NAN)]
+        for number in range(4):
+            assert look(walls, number).block_m == pytest.approx(0.8, abs=0.01)
+        assert math.isinf(look(walls, 4).block_m)
+
+    def test_what_is_seen_from_inside_or_joined_to_that_is_no_block(self):
+        assert math.isinf(look(box(0.8)).block_m)
+        beside = [wall(*side.ends.ravel() + 0.1, NAN) for side in self.sides()]
+        assert math.isinf(look([*beside, *box(8.0)]).block_m)
+
+    def test_a_wall_between_deep_doors_is_no_block(self):
+        """Of it the front and two reveals are seen."""
+        assert math.isinf(look(self.sides()[:3]).block_m)
+
+    def test_a_wall_with_both_sides_is_no_block(self):
+        assert math.isinf(look([wall(0, 0, 4, 0, 0.4)]).block_m)
+
+
 class TestCorners:
     def test_a_wall_of_a_room_has_inner_corners(self):
         """Seen from inside, the next walls come forward at both ends."""

@@ -34,6 +34,7 @@ PARTITION = Features(
     hinge_m=INF,
     before_m=INF,
     back_m=INF,
+    block_m=INF,
     turned_deg=0.2,
     through_glass=0.0,
 )
@@ -63,6 +64,18 @@ CUPBOARD = replace(
     joint_m=0.1,
     before_m=0.6,
 )
+RACK = replace(
+    PARTITION,
+    length_m=5.0,
+    thickness_m=INF,
+    solid=1.0,
+    top_m=NAN,
+    overlooked=NAN,
+    n_inner=0,
+    n_outer=2,
+    back_m=0.8,
+    block_m=0.8,
+)
 FACADE_ACROSS = replace(
     PARTITION,
     length_m=12.0,
@@ -78,6 +91,7 @@ TEXTBOOK = [
     pytest.param(ROOM_WALL, WALL, id="a wall of a room, seen from one side"),
     pytest.param(OPEN_LEAF, LEAF, id="an open leaf"),
     pytest.param(CUPBOARD, FURNITURE, id="the front of a cupboard"),
+    pytest.param(RACK, FURNITURE, id="the side of a rack that stands free, seen in the plane"),
     pytest.param(FACADE_ACROSS, OUTSIDE, id="the building across the street"),
 ]
 
@@ -116,6 +130,8 @@ def test_a_building_without_furniture_has_less_of_it():
         (PARTITION, WALL, {"through_glass": 0.9}),
         (PARTITION, WALL, {"before_m": 0.6}),
         (PARTITION, WALL, {"joint_m": INF}),
+        (PARTITION, WALL, {"block_m": 0.8}),
+        (RACK, FURNITURE, {"block_m": INF}),
         (OPEN_LEAF, LEAF, {"hinge_m": 1.5}),
         (OPEN_LEAF, LEAF, {"length_m": 2.0}),
         (OPEN_LEAF, LEAF, {"turned_deg": 0.1}),

@@ -7,7 +7,10 @@ from functools import cached_property
 
 import numpy as np
 import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, ROWS_M, SurfaceCounts
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
@@ -20,6 +23,7 @@ _DEEP_M = 1.0  # furniture is no deeper
 _APART_M = 2.0  # farther off a surface stands alone
 _ACROSS = 0.9  # cosine of normals: flatter than that one surface goes on as the other
 _ALONG = 0.3  # of its length: what overlaps less is beside it, not behind
+_JOINED_M = 0.3  # surfaces no farther apart are of one thing, or one building
 _SEEN = 0.5  # witnesses of a cell that returns came from, or that rays passed
 
 
@@ -54,6 +58,9 @@ class Features:
         How far behind it another surface runs that faces the same way.
     back_m : float
         How far behind it another surface runs that faces the other way.
+    block_m : float
+        How deep the block is that it is a side of: the shorter side of the rectangle around all
+        that it is joined to, if most of that was seen from outside alone, the back with it.
     turned_deg : float
         From the nearest main direction of the building, 0 to 45.
     through_glass : float
@@ -73,6 +80,7 @@ class Features:
     hinge_m: float
     before_m: float
     back_m: float
+    block_m: float
     turned_deg: float
     through_glass: float
 
@@ -116,6 +124,7 @@ class Surroundings:
                 hinge_m=self._find_hinge_m(number),
                 before_m=self._find_before_m(number),
                 back_m=self._find_back_m(number),
+                block_m=float(self._block_m[number]),
                 turned_deg=float(self._turned_deg[number]),
                 through_glass=float(through_glass[number]),
             )
@@ -156,6 +165,33 @@ class Surroundings:
         turn = np.exp(4j * np.arctan2(way[:, 1], way[:, 0]))  # the same of both and across
         main = (turn * np.hypot(*way.T)).sum()
         return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
+
+    @cached_property
+    def _block_m(self) -> FloatArray:
+        """How deep the block is that each surface (n,) is a side of, with what it is joined to."""
+        reach_m = [_JOINED_M + wall.half_m for wall in self.walls]
+        one, other = self._tree.query(self._lines, predicate="dwithin", distance=reach_m)
+        count = len(self.walls)
+        links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
+        n_groups, group = connected_components(links, directed=False)
+        ends_m = np.array([wall.ends for wall in self.walls]).reshape(-1, 2, 2)
+        normal = np.array([wall.line.normal for wall in self.walls]).reshape(-1, 2)
+        is_single = np.array([not wall.right for wall in self.walls], bool)
+        length_m = np.array([wall.length_m for wall in self.walls])
+        block_m = np.full(count, math.inf)
+        for number in range(n_groups):
+            own = group == number
+            outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
+            middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
+            off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
+            is_outer = is_single[own] & (off_m > BEHIND_M)
+            outer_m = length_m[own][is_outer]
+            if 2 * outer_m.sum() > length_m[own].sum():
+                longest = normal[own][is_outer][outer_m.argmax()]
+                # fronts and reveals of a wall between deep doors face no more than three ways
+                if (normal[own][is_outer] @ longest).min() < -_ACROSS:
+                    block_m[own] = rectangle_sides_m(outline)[0]
+        return block_m
 
     def _near(self, number: int, place: shapely.Geometry, within_m: float) -> list[int]:
         near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
