@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from scanplan.geometry.arcs import NO_CIRCLES, SAGITTA_M, bend_path
 from scanplan.types import FloatArray
 
 Facts = Mapping[str, str | int | float | bool]
@@ -32,6 +33,8 @@ class Mark:
         What it is, in words.
     facts : dict
     verify : bool
+    circles_m : (k, 3) float
+        Those that its paths may follow in short chords: x and y of centre, radius.
     """
 
     kind: str
@@ -41,6 +44,14 @@ class Mark:
     title: str = ""
     facts: Facts = field(default_factory=dict, repr=False)
     verify: bool = False
+    circles_m: FloatArray = field(default_factory=lambda: NO_CIRCLES, repr=False)
+
+    @property
+    def bent_paths(self) -> list[FloatArray]:
+        """Its paths, with arcs in place of short chords of circles."""
+        if not len(self.circles_m):
+            return self.paths
+        return [bend_path(path[:, :2], self.circles_m, SAGITTA_M) for path in self.paths]
 
 
 @dataclass(frozen=True)
@@ -155,8 +166,11 @@ def straight(points: FloatArray) -> FloatArray:
     return np.column_stack([points, np.zeros(len(points))])
 
 
-def flatten(path: FloatArray) -> FloatArray:
-    """Return the corners (m, 2) of a path (n, 3), its arcs cut into short lines."""
+def flatten(path: FloatArray, per_rad: float = 10.0) -> FloatArray:
+    """Return the corners (m, 2) of a path (n, 3), its arcs cut into so many short lines a radian.
+
+    Ten are off by a hundredth of a millimetre at a door's size.
+    """
     parts = [path[:1, :2]]
     for (x0, y0, bulge), (x1, y1, _) in pairwise(path):
         start, end = np.array([x0, y0]), np.array([x1, y1])
@@ -168,8 +182,7 @@ def flatten(path: FloatArray) -> FloatArray:
         # the centre lies left of the chord's middle where the arc turns left by less than half
         away = np.array([-chord[1], chord[0]]) / (2 * np.tan(turn / 2))
         centre = (start + end) / 2 + away
-        # a corner every tenth of a radian: off by a hundredth of a millimetre at a door's size
-        angles = np.linspace(0, turn, int(np.ceil(10 * abs(turn))) + 1)[1:]
+        angles = np.linspace(0, turn, int(np.ceil(per_rad * abs(turn))) + 1)[1:]
         x, y = start - centre
         turned = [x * np.cos(angles) - y * np.sin(angles), x * np.sin(angles) + y * np.cos(angles)]
         parts.append(centre + np.column_stack(turned))
