@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.store import schemas
 
 HEIGHT_M = 2.5
 ASSUMED_M = 0.1
@@ -77,6 +78,7 @@ def walls(rows=WALLS):
         "wall": np.arange(n, dtype=np.int32),
         **_ends([row[0] for row in rows]),
         "thickness_m": np.array([row[1] for row in rows], float),
+        **{name: np.full(len(rows), np.nan) for name in schemas.ARC},
         "face_left": np.array([row[2] for row in rows], np.int32),
         "face_right": np.array([row[3] for row in rows], np.int32),
         "state": np.array([row[4] for row in rows], object),

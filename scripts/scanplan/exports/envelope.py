@@ -30,10 +30,13 @@ def find_external_walls(plan: FloorPlan) -> BoolArray:
     # places along it, its corners left out
     shares = np.linspace(0.05, 0.95, 10)
     places_m = lines_m[:, None, 0] + along[:, None] * shares[:, None]
+    normals = np.repeat(normals[:, None], len(shares), axis=1)
+    for row in np.flatnonzero(plan.wall_shapes.is_bent).tolist():
+        places_m[row], normals[row] = plan.wall_shapes.place_along(row, shares)
     left_m, right_m = plan.sides_m
 
     def is_open(beyond_m: FloatArray) -> BoolArray:
-        probes_m = places_m + (normals * beyond_m[:, None])[:, None]
+        probes_m = places_m + normals * beyond_m[:, None, None]
         is_outside = ~shapely.contains_xy(inside, probes_m[..., 0], probes_m[..., 1])
         return is_outside.mean(axis=1) >= 1 / 2
 

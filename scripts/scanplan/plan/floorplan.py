@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.plan import wall_footprints
+from scanplan.plan.curves.bent_footprints import WallShapes
 from scanplan.plan.plan_wall import Nearly
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
@@ -44,6 +44,12 @@ def centrelines_m(columns: Columns) -> FloatArray:
     """Return the lines (n, 2, 2) float64 of a table with the columns x0_m, y0_m, x1_m, y1_m."""
     ends = np.column_stack([columns[name] for name in _ENDS])
     return ends.astype(float).reshape(-1, 2, 2)
+
+
+def shape_walls(walls: Columns, left_m: FloatArray, right_m: FloatArray) -> WallShapes:
+    """Return the lines of walls, straight and curved, and how far their surfaces lie off."""
+    centres_m = np.column_stack([walls[name] for name in schemas.ARC[:2]]).astype(float)
+    return WallShapes(centrelines_m(walls), left_m, right_m, centres_m.reshape(-1, 2))
 
 
 def _no_openings() -> Columns:
@@ -160,23 +166,45 @@ class FloorPlan:
         return np.where(self.thick, half_m, left_m), np.where(self.thick, half_m, right_m)
 
     @cached_property
-    def bodies(self) -> Array:
-        """The footprint of each wall, (n,) Polygons, openings not cut out."""
-        return wall_footprints.draw_footprints(centrelines_m(self.walls), *self.sides_m)
+    def wall_shapes(self) -> WallShapes:
+        """The lines of its walls, straight and curved, and how far their surfaces lie off."""
+        return shape_walls(self.walls, *self.sides_m)
 
     @cached_property
-    def _surfaces_m(self) -> FloatArray:
-        """The side (n, 2, 2) of each wall that was seen, less what runs on beyond its corners."""
-        left_m, right_m = wall_footprints.cut_sides(centrelines_m(self.walls), *self.sides_m)
-        is_left = self.walls["face_left"] >= 0
-        return np.where(is_left[:, None, None], left_m, right_m)
+    def axes(self) -> Array:
+        """The line of each wall, (n,) LineStrings: of a curved one as `arcs.trace_arc` draws it."""
+        return self.wall_shapes.draw_axes()
+
+    @cached_property
+    def lengths_m(self) -> FloatArray:
+        """How long each wall is along its line, (n,)."""
+        return self.wall_shapes.measure_lengths_m()
+
+    @cached_property
+    def circles_m(self) -> FloatArray:
+        """The circles (k, 3) of curved walls' lines and sides: x and y of centre, radius."""
+        left_m, right_m = self.sides_m
+        radius_m = self.walls["arc_radius_m"].astype(float)
+        radii_m = [radius_m + m for m in (0.0, left_m, -left_m, right_m, -right_m)]
+        circles = [np.column_stack([self.wall_shapes.centres_m, of_m]) for of_m in radii_m]
+        known = np.concatenate(circles)
+        return np.unique(known[np.isfinite(known).all(axis=1)], axis=0)
+
+    @cached_property
+    def bodies(self) -> Array:
+        """The footprint of each wall, (n,) Polygons, openings not cut out."""
+        return self.wall_shapes.draw_footprints()
+
+    @cached_property
+    def _surfaces(self) -> Array:
+        """The side of each wall that was seen, (n,), less what runs on beyond its corners."""
+        left, right = self.wall_shapes.cut_sides()
+        return np.where(self.walls["face_left"] >= 0, left, right)
 
     @cached_property
     def known_bodies(self) -> Array:
         """Likewise of the walls of known thickness, none of them mitred with an assumed one."""
-        left_m, right_m = self.sides_m
-        lines_m = centrelines_m(self.walls)[self.thick]
-        return wall_footprints.draw_footprints(lines_m, left_m[self.thick], right_m[self.thick])
+        return self.wall_shapes.take(self.thick).draw_footprints()
 
     @cached_property
     def hosts(self) -> IntArray:
@@ -192,6 +220,11 @@ class FloorPlan:
         # one more for the openings that are in no wall
         walls_m = np.append(np.maximum(*self.sides_m), 0.0)
         half_m = np.maximum(thickness_m / 2, walls_m[self.hosts]) + _CLEARANCE_M
+        # a curved wall bows beside the line from jamb to jamb
+        radius_m = np.append(self.walls["arc_radius_m"].astype(float), np.nan)[self.hosts]
+        chord_m = np.hypot(*np.diff(centrelines_m(self.openings), axis=1)[:, 0].T)
+        bow_m = radius_m - np.sqrt(np.maximum(radius_m**2 - (chord_m / 2) ** 2, 0.0))
+        half_m = half_m + np.nan_to_num(bow_m)
         return buffer_lines(centrelines_m(self.openings), half_m)
 
     def solid(self, state: str) -> BaseGeometry:
@@ -211,9 +244,8 @@ class FloorPlan:
         # a face that is a side of a wall is drawn with it
         is_loose = (self.faces["wall"] < 0) & (self.faces["state"] == state)
         is_one_sided = ~self.thick & (self.walls["state"] == state)
-        wall_lines_m = self._surfaces_m[is_one_sided]
-        face_lines_m = centrelines_m(self.faces)[is_loose]
-        lines = line_shapes(np.concatenate([wall_lines_m, face_lines_m]))
+        faces = line_shapes(centrelines_m(self.faces)[is_loose])
+        lines = np.concatenate([self._surfaces[is_one_sided], faces])
         # they end at the surfaces of the walls that they meet
         hidden = overlays.unite_areas(
             [*self.gaps, *overlays.buffer_shapes(self.known_bodies, _GRID_M, quad_segs=8)]

@@ -6,7 +6,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.plan.faces.intervals import LEAST_OPEN_COLUMNS
-from scanplan.plan.floorplan import say_count
+from scanplan.plan.floorplan import say_count, shape_walls
 from scanplan.plan.planning import Plan
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays.beam_spread import column_spacing_rad
@@ -99,7 +99,10 @@ def summarise_plan(plan: Plan) -> str:
     walls = plan.walls
     faces = plan.faces
     rooms = plan.rooms
-    length_m = np.hypot(walls["x1_m"] - walls["x0_m"], walls["y1_m"] - walls["y0_m"]).sum()
+    on_line_m = np.zeros(len(walls["wall"]))
+    length_m = shape_walls(walls, on_line_m, on_line_m).measure_lengths_m().sum()
+    n_curved = int(np.isfinite(walls["arc_radius_m"]).sum())
+    curved = f" {n_curved} curved," if n_curved else ""
     n_paired = int(np.isfinite(walls["thickness_m"]).sum())
     n_doubtful = int(walls["verify"].sum())
     n_inferred = int((faces["state"] == "inferred").sum())
@@ -110,7 +113,7 @@ def summarise_plan(plan: Plan) -> str:
     )
     n_unseen = int((plan.openings["type"] == UNSEEN).sum())
     parts = [
-        f"{len(walls['wall'])} walls ({n_paired} with thickness, {n_doubtful} to verify),"
+        f"{len(walls['wall'])} walls ({n_paired} with thickness,{curved} {n_doubtful} to verify),"
         f" {length_m:,.1f} m",
         f"{len(faces['face'])} faces, {n_inferred} of them inferred",
         say_count(len(plan.openings["opening"]) - n_unseen, "opening"),

@@ -13,7 +13,7 @@ from scanplan.geometry.polygons import largest_first
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.openings import GAP
-from scanplan.plan.plan_wall import InferredFace, PlanWall
+from scanplan.plan.plan_wall import Bend, InferredFace, PlanWall
 from scanplan.plan.rooms.room import Room, rooms_beside
 from scanplan.plan.tolerances import LOW_PERCENT
 from scanplan.plan.uncertainty import WallEvidence
@@ -103,6 +103,7 @@ def wall_columns(
             "wall": number,
             **_end_columns(wall.ends),
             "thickness_m": wall.thickness_m,
+            **_bend_columns(wall.bend),
             "face_left": main_rows.get((number, True), -1),
             "face_right": main_rows.get((number, False), -1),
             "state": "observed" if known.observed >= 1 - known.observed else "inferred",
@@ -140,7 +141,7 @@ def opening_columns(
     rows: list[Row] = []
     for number, wall in enumerate(walls):
         for opening in wall.openings:
-            ends_m = wall.line.at(np.array([opening.low_m, opening.high_m]))
+            ends_m = wall.at(np.array([opening.low_m, opening.high_m]))
             known = {
                 "wall": number,
                 "type": opening.type_name(max_door_m),
@@ -171,6 +172,13 @@ def opening_columns(
     return columns_of_rows(
         [{"opening": number, **row} for number, row in enumerate(rows)], schemas.OPENINGS
     )
+
+
+def _bend_columns(bend: Bend | None) -> Row:
+    if bend is None:
+        return dict.fromkeys(schemas.ARC, math.nan)
+    known = (*bend.centre_m.tolist(), bend.radius_m, bend.sigma_m)
+    return dict(zip(schemas.ARC, known, strict=True))
 
 
 def _place_columns(ends_m: FloatArray, rooms: tuple[int, int]) -> Row:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from scanplan.geometry import intersections
+from scanplan.geometry import arcs, intersections
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import Opening
@@ -41,8 +41,17 @@ class Nearly:
 
 
 @dataclass(frozen=True, eq=False)
+class Bend:
+    """The circle that the line of a curved wall lies on: radius, and its standard deviation."""
+
+    centre_m: FloatArray
+    radius_m: float
+    sigma_m: float
+
+
+@dataclass(frozen=True, eq=False)
 class PlanWall(Span):
-    """A straight wall of one or two sides, from `low_m` to `high_m` along its middle.
+    """A wall of one or two sides, from `low_m` to `high_m` along its middle.
 
     Attributes
     ----------
@@ -64,6 +73,9 @@ class PlanWall(Span):
         between openings that they are solid, in the mean of their length. NaN: not weighed.
     nearly : sequence of Nearly
         Openings that it nearly has.
+    bend : Bend, optional
+        Of a curved wall: `line` is the chord of its middle, and places along it are those of the
+        chord that they lie beside. It turns by less than half a circle.
     """
 
     line: Line
@@ -78,6 +90,73 @@ class PlanWall(Span):
     p_wall: float = math.nan
     p_solid: float = math.nan
     nearly: Sequence[Nearly] = ()
+    bend: Bend | None = None
+
+    def at(self, along_m: FloatArray | float) -> FloatArray:
+        """Return the places (..., 2) of its middle at positions (...,) along it."""
+        if self.bend is None:
+            return self.line.at(along_m)
+        foot_m = self.line.at(self.line.along_m(self.bend.centre_m))
+        chord_m = np.asarray(self.line.at(along_m))
+        off_m = np.sum((chord_m - foot_m) ** 2, axis=-1)
+        bow_m = np.sqrt(np.maximum(self.bend.radius_m**2 - off_m, 0.0))
+        rise_m = -self._towards_centre * bow_m + float(self.line.offset_m(self.bend.centre_m))
+        return chord_m + rise_m[..., None] * self.line.normal
+
+    def trace(
+        self, low_m: float, high_m: float, off_m: float = 0.0, beyond_m: float = 0.0
+    ) -> FloatArray:
+        """Return places (n, 2) along it from one position to another, so far on its left.
+
+        They go on beyond both, so far along it: of a curved wall along its circle.
+        """
+        if self.bend is None:
+            along_m = np.array([low_m - beyond_m, high_m + beyond_m])
+            return self.line.at(along_m) + off_m * self.line.normal
+        return arcs.trace_arc(
+            self.at(np.array([low_m, high_m])),
+            self.bend.centre_m,
+            away_m=-self._towards_centre * off_m,
+            beyond_m=beyond_m,
+        )
+
+    def reach_m(self, ends_m: FloatArray) -> tuple[float, float]:
+        """Return from where to where along it what has two ends (2, 2) beside it reaches."""
+        along_m = self.line.along_m(ends_m)
+        if self.bend is not None:
+            # straight out from the centre
+            middle_m = self.line.along_m(self.bend.centre_m)
+            from_centre_m = np.hypot(*(ends_m - self.bend.centre_m).T)
+            along_m = middle_m + (along_m - middle_m) * self.bend.radius_m / from_centre_m
+        low_m, high_m = np.sort(along_m).tolist()
+        return low_m, high_m
+
+    def normal_at(self, place_m: FloatArray) -> FloatArray:
+        """Return the unit normal (2,) on its left beside a place (2,)."""
+        if self.bend is None:
+            return self.line.normal
+        towards_m = self._towards_centre * (self.bend.centre_m - place_m)
+        return towards_m / np.hypot(*towards_m)
+
+    def cross_bend(self, line: Line) -> list[float]:
+        """Return where along a line it crosses the middle of this curved wall."""
+        if self.bend is None:
+            return []
+        nearest_m = float(line.along_m(self.bend.centre_m))
+        off_m = float(line.offset_m(self.bend.centre_m))
+        half_m = math.sqrt(max(self.bend.radius_m**2 - off_m**2, 0.0))
+        places_m = [nearest_m - half_m, nearest_m + half_m] if half_m else []
+        return [place_m for place_m in places_m if self._is_beside(line.at(place_m))]
+
+    def _is_beside(self, place_m: FloatArray) -> bool:
+        """Return whether a place on its circle is on its arc."""
+        is_between = self.low_m <= float(self.line.along_m(place_m)) <= self.high_m
+        return is_between and float(self.line.offset_m(place_m)) * self._towards_centre <= 0
+
+    @property
+    def _towards_centre(self) -> int:
+        """1 of a curved wall whose centre is on its left, else -1."""
+        return 1 if self.bend and self.line.offset_m(self.bend.centre_m) > 0 else -1
 
     @property
     def members(self) -> list[FaceInterval]:

@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import plan_tables, uncertainty, wall_faces, wall_ground
+from scanplan.plan.curves.curved_walls import bend_walls
 from scanplan.plan.faces.furniture_fronts import FurnitureLimits
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
@@ -361,6 +362,12 @@ class _Survey:
         )
         walls, tops_m = self._leave_out_columns(
             *(labelled.walls, labelled.tops_m, glass_walls, unpaired_m)
+        )
+        walls, tops_m = bend_walls(
+            *(walls, tops_m, self.rays),
+            pairing=self.settings.pairs,
+            opening=self.settings.openings,
+            reading=self.settings.reading,
         )
         return _Surfaces(
             walls=walls,

@@ -10,6 +10,7 @@ from shapely.geometry import LineString, Polygon
 from scanplan.geometry import overlays
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
+from scanplan.plan.curves.arc_faces import infer_bent_faces
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import InferredFace, PlanWall
 from scanplan.plan.tolerances import END_M
@@ -52,12 +53,13 @@ def cut_wall_faces(
             ]
             for side in (wall.left, wall.right)
         )
+        unseen = infer_bent_faces(wall) if wall.bend else _inferred_extents(wall, max_beyond_m)
         inferred = [
             InferredFace(line, low_m, high_m, is_left)
-            for line, whole_m, is_left in _inferred_extents(wall, max_beyond_m)
+            for line, whole_m, is_left in unseen
             for extent_m in _without_open(wall, line, whole_m, door_height_m)
             for low_m, high_m in ground.cut(line, extent_m, number)
-            if high_m - low_m >= END_M
+            if high_m - low_m >= END_M or wall.bend
         ]
         cut.append(replace(wall, left=left, right=right, inferred=inferred))
     return cut
@@ -87,9 +89,12 @@ def _block(wall: PlanWall) -> Polygon:
     """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing."""
     if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
         return Polygon()
-    start, end = wall.line.at(np.array([wall.low_m - CELL_M, wall.high_m + CELL_M]))
-    across = (wall.half_m - _INSIDE_M) * wall.line.normal
-    return Polygon([start - across, end - across, end + across, start + across])
+    across_m = wall.half_m - _INSIDE_M
+    right, left = (
+        wall.trace(wall.low_m, wall.high_m, off_m, beyond_m=CELL_M)
+        for off_m in (-across_m, across_m)
+    )
+    return Polygon([*right, *left[::-1]])
 
 
 def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Line, Extent, bool]]:

@@ -85,7 +85,7 @@ def draw_footprints(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray
     ValueError
         If a wall has no length or no thickness.
     """
-    corners = _find_corners(lines_m, left_m, right_m)
+    corners = find_corners(lines_m, left_m, right_m)
     n_walls = len(corners) // 2
     rings = [_ring(corners[2 * wall], corners[2 * wall + 1]) for wall in range(n_walls)]
     return np.array([shapely.orient_polygons(ring) for ring in rings], object)
@@ -99,7 +99,7 @@ def cut_sides(
     They end where the wall does, or before it in the corners of its footprint: what runs on beyond
     a wall that it meets is left out. `draw_footprints` has the parameters.
     """
-    corners = _find_corners(lines_m, left_m, right_m)
+    corners = find_corners(lines_m, left_m, right_m)
     ends = _ends(*_as_walls(lines_m, left_m, right_m))
     sides: list[list[FloatArray]] = [[], []]
     for e in range(len(corners)):
@@ -119,7 +119,7 @@ def _as_walls(
     return np.asarray(lines_m, float).reshape(-1, 2, 2), left_m, right_m
 
 
-def _find_corners(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -> Corners:
+def find_corners(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -> Corners:
     """Return the corners of all ends; square ones where others turn a wall inside out."""
     lines_m, left_m, right_m = _as_walls(lines_m, left_m, right_m)
     ends = _ends(lines_m, left_m, right_m)

@@ -61,7 +61,7 @@ def ground_before(walls: Sequence[PlanWall], unpaired_m: float) -> BaseGeometry:
     for wall, strip in zip(walls, wall_strips(walls, unpaired_m), strict=True):
         around = overlays.buffer_shapes(strip, END_M)
         if np.isnan(wall.thickness_m):
-            back = shapely.LineString(wall.ends - unpaired_m * wall.line.normal)
+            back = shapely.LineString(wall.trace(wall.low_m, wall.high_m, -unpaired_m))
             around = overlays.subtract_areas(
                 around, overlays.buffer_shapes(back, END_M, cap_style="square")
             )
@@ -127,6 +127,5 @@ def _ground(wall: PlanWall, low_m: float, high_m: float, unpaired_m: float) -> P
     is_single = np.isnan(wall.thickness_m)
     left_m = 0.0 if is_single else wall.half_m
     right_m = -unpaired_m if is_single else -wall.half_m
-    start, end = wall.line.at(np.array([low_m, high_m]))
-    across = np.array([right_m, left_m])[:, None] * wall.line.normal
-    return Polygon([start + across[0], end + across[0], end + across[1], start + across[1]])
+    right, left = (wall.trace(low_m, high_m, off_m) for off_m in (right_m, left_m))
+    return Polygon([*right, *left[::-1]])

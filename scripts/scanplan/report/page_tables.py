@@ -56,7 +56,7 @@ class PageTable:
 
 def wall_lengths_m(plan: floorplan.FloorPlan) -> FloatArray:
     """Return the lengths (n,) of the walls of a plan."""
-    return np.hypot(*np.diff(floorplan.centrelines_m(plan.walls), axis=1)[:, 0].T)
+    return plan.lengths_m
 
 
 def wall_table(plan: floorplan.FloorPlan, evidence: Columns) -> PageTable:

@@ -237,13 +237,16 @@ FACES = Schema(
 `state` is observed or inferred, `wall` the wall that the face is a side of (-1: of none).
 """
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
+ARC = ("arc_x_m", "arc_y_m", "arc_radius_m", "sigma_radius_m")
+"""Columns of the circle that the line of a curved wall lies on."""
 PLAN_WALLS = Schema(
     "plan_walls",
-    4,
+    5,
     {
         "wall": "int32",
         **_CENTRELINE,
         "thickness_m": "float64",
+        **dict.fromkeys(ARC, "float64"),
         "face_left": "int32",
         "face_right": "int32",
         "state": "string",
@@ -272,6 +275,9 @@ PLAN_WALLS = Schema(
 One seen from a single side has no thickness (NaN), and its line is that of its face. `p_wall` is
 how likely it is a wall by what is around it, no leaf, furniture or what is outside, `p_solid` how
 likely what lies between its openings is solid, by rays (NaN: of one that a person drew).
+The line of a curved wall is the shorter arc between its ends around `arc_x_m`, `arc_y_m`, of
+`arc_radius_m` with its standard deviation `sigma_radius_m` (NaN: of a straight wall); its faces are
+chords within 2 mm of their circle.
 `corrected` says what a person said of it, here and of openings and rooms; empty where nobody did.
 """
 OPENINGS = Schema(

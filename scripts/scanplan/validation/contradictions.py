@@ -80,7 +80,5 @@ def measure_share_through_walls(plan: FloorPlan, track_m: FloatArray) -> float:
     if len(steps) < ENOUGH_RAYS:
         return 0.0
     ways = overlays.unite_areas(overlays.buffer_shapes(plan.gaps, END_M, quad_segs=8))
-    walls = overlays.subtract_lines(
-        overlays.unite_lines(line_shapes(centrelines_m(plan.walls))), ways
-    )
+    walls = overlays.subtract_lines(overlays.unite_lines(plan.axes), ways)
     return float(shapely.intersects(steps, walls).mean())

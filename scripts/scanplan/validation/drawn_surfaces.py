@@ -184,10 +184,9 @@ def _outline_ways(plan: FloorPlan, drawn: BaseGeometry, span_m: float) -> Iterat
 def _wall_ends(plan: FloorPlan) -> Iterator[_Surface]:
     """Yield the caps of walls of known thickness."""
     left_m, right_m = plan.sides_m
-    for row in np.flatnonzero(plan.thick):
-        ends_m = centrelines_m(plan.walls)[row]
-        normal = _normal(ends_m)
-        yield from _caps(ends_m + left_m[row] * normal, ends_m - right_m[row] * normal)
+    for row in np.flatnonzero(plan.thick).tolist():
+        sides_m = [plan.wall_shapes.trace(row, off_m) for off_m in (left_m[row], -right_m[row])]
+        yield from _caps(*(side_m[[0, -1]] for side_m in sides_m))
 
 
 def _caps(left_m: FloatArray, right_m: FloatArray) -> Iterator[_Surface]:

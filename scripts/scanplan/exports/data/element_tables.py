@@ -9,7 +9,6 @@ import numpy as np
 
 from scanplan.exports import envelope
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, Columns
 
@@ -40,9 +39,7 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     """
     names = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
     walls = _plain(plan.walls, ids["wall"])
-    lines_m = floorplan.centrelines_m(plan.walls)
-    lengths_m = np.linalg.norm(lines_m[:, 1] - lines_m[:, 0], axis=1)
-    walls["length_m"] = np.round(lengths_m, 4).tolist()
+    walls["length_m"] = np.round(plan.lengths_m, 4).tolist()
     walls["height_m"] = np.round(plan.heights_m, 4).tolist()
     walls["external"] = envelope.find_external_walls(plan).tolist()
     openings = _plain(plan.openings, ids["opening"])

@@ -42,7 +42,7 @@ def state_accuracy(plan: FloorPlan, sensor: SensorErrors = SensorErrors()) -> st
     if verdict.worth != PLAN:
         return f"none stated of {verdict.worth.replace('not a', 'what is no')}"
     lines_m = centrelines_m(plan.walls)
-    lengths_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+    lengths_m = plan.lengths_m
     sigmas_m = np.asarray(plan.walls["sigma_offset_m"], float)
     is_known = np.isfinite(sigmas_m)
     if not is_known.any():

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from scanplan.geometry import overlays
+from scanplan.geometry import arcs, overlays
 from scanplan.plan import floorplan
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
@@ -19,7 +19,7 @@ ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 
 def find_nearest(rows: Sequence[Row], place: shapely.Point) -> Row | None:
     """Return the row with the line nearest to a place, None where none is within reach."""
-    far_m = [shapely.distance(_line(row), place) for row in rows]
+    far_m = [shapely.distance(_axis(row), place) for row in rows]
     nearest = int(np.argmin(far_m)) if far_m else -1
     return rows[nearest] if far_m and far_m[nearest] <= REACH_M else None
 
@@ -41,7 +41,7 @@ def add_wall(rows: PlanRows, line_m: FloatArray, thickness_m: float | None, said
 
 def explain_misfit(wall: Row, line_m: FloatArray) -> str | None:
     """Return why a line (2, 2) is no opening of a wall; None where it is one."""
-    start_m, along, length_m = _frame(wall)
+    start_m, along, length_m = _frame(wall, line_m)
     reach_m = np.sort((line_m - start_m) @ along)
     if np.diff(reach_m)[0] < np.hypot(*(line_m[1] - line_m[0])) / 2:
         return f"runs across wall {wall['wall']}, not along it"
@@ -53,7 +53,7 @@ def explain_misfit(wall: Row, line_m: FloatArray) -> str | None:
 
 def add_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str, said: str) -> None:
     """Add an opening in a wall where a line (2, 2) is beside it, and cut the wall's faces."""
-    start_m, along, _ = _frame(wall)
+    start_m, along, _ = _frame(wall, line_m)
     reach_m = np.sort((line_m - start_m) @ along)
     ends_m = start_m + reach_m[:, None] * along
     half_m = max(_half_m(wall), REACH_M)
@@ -84,8 +84,8 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
     if wall is None:
         return None
-    _, along, _ = _frame(wall)
     line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in ENDS})[0]
+    _, along, _ = _frame(wall, line_m)
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
     half_m = _half_m(wall)
@@ -125,11 +125,20 @@ def _cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
             rows.faces.append(face | _ends(shapely.get_coordinates(part)) | {"face": number})
 
 
-def _frame(wall: Row) -> tuple[FloatArray, FloatArray, float]:
-    """Return where a wall's line starts, its direction, and its length in metres."""
-    start_m, end_m = shapely.get_coordinates(_line(wall))
-    length_m = np.hypot(*(end_m - start_m))
-    return start_m, (end_m - start_m) / length_m, float(length_m)
+def _frame(wall: Row, line_m: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+    """Return where a wall's line starts, its direction, and its length in metres.
+
+    A curved one is laid straight along its tangent beside the middle of another line (2, 2).
+    """
+    axis = _axis(wall)
+    corners_m = shapely.get_coordinates(axis)
+    reach_m = axis.project(shapely.Point(line_m.mean(axis=0)))
+    steps_m = np.cumsum(np.hypot(*np.diff(corners_m, axis=0).T))
+    row = min(int(np.searchsorted(steps_m, reach_m)), len(steps_m) - 1)
+    length_m = np.hypot(*(corners_m[row + 1] - corners_m[row]))
+    along = (corners_m[row + 1] - corners_m[row]) / length_m
+    before_m = steps_m[row] - length_m
+    return corners_m[row] - before_m * along, along, float(axis.length)
 
 
 def _half_m(wall: Row) -> float:
@@ -145,6 +154,15 @@ def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
 def _line(row: Row) -> shapely.LineString:
     x0_m, y0_m, x1_m, y1_m = (row[name] for name in ENDS)
     return shapely.LineString([(x0_m, y0_m), (x1_m, y1_m)])
+
+
+def _axis(row: Row) -> shapely.LineString:
+    """Return a row's line, of a curved wall its arc."""
+    line = _line(row)
+    if not np.isfinite(row.get("arc_radius_m", np.nan)):
+        return line
+    centre_m = np.array([row["arc_x_m"], row["arc_y_m"]])
+    return shapely.LineString(arcs.trace_arc(shapely.get_coordinates(line), centre_m))
 
 
 def _ends(line_m: FloatArray) -> Row:

@@ -43,7 +43,7 @@ class Room:
 
 def rooms_beside(rooms: Sequence[Room], place_m: FloatArray, wall: PlanWall) -> tuple[int, int]:
     """Return the rooms (indices, -1: none) on the left and right of a place (2,) in a wall."""
-    away = np.outer(wall.half_m + _BESIDE_WALL_M, wall.line.normal)
+    away = np.outer(wall.half_m + _BESIDE_WALL_M, wall.normal_at(place_m))
     return _first_room(rooms, place_m + away), _first_room(rooms, place_m - away)
 
 

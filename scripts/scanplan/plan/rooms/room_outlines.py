@@ -217,11 +217,13 @@ def _bounding_lines(wall: PlanWall, part: BaseGeometry, unpaired_m: float) -> li
     They go on no farther than it is long: short walls bound what is near to them.
     """
     back_m = unpaired_m if np.isnan(wall.thickness_m) else wall.half_m
-    normal = wall.line.normal
     reach_m = wall.length_m + _MARGIN_M
-    along_m = np.array([wall.low_m - reach_m, wall.high_m + reach_m])
-    lines = [LineString(wall.line.at(along_m) + off_m * normal) for off_m in (wall.half_m, -back_m)]
+    lines = [
+        LineString(wall.trace(wall.low_m, wall.high_m, off_m, beyond_m=reach_m))
+        for off_m in (wall.half_m, -back_m)
+    ]
     for end in wall.ends:
         if shapely.Point(end).distance(part) <= 2 * END_M:
-            lines.append(LineString([end - reach_m * normal, end + reach_m * normal]))
+            across_m = reach_m * wall.normal_at(end)
+            lines.append(LineString([end - across_m, end + across_m]))
     return lines

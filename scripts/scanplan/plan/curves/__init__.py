@@ -1,0 +1,1 @@
+"""Curved walls: faces that are chords of one circle, and the walls that they show."""

@@ -1,0 +1,70 @@
+"""Places that a face's points lie at, column by column, with how far each may be off."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.tolerances import ENOUGH_RAYS
+from scanplan.rays.face_raster import CELL_M
+from scanplan.types import FloatArray
+
+_LEAST_COLUMNS = 4  # fewer show no curvature beside noise
+_LEAST_VARIANCE_M2 = 1e-8  # a tenth of a millimetre: what ranges are rounded to at best
+
+
+@dataclass(frozen=True, eq=False)
+class FaceSamples:
+    """A face of a wall by its columns.
+
+    Attributes
+    ----------
+    wall : int
+        The number of its wall.
+    face : intervals.FaceInterval
+    xy_m : (n, 2) float64
+        The mean place of each column's points, scan by scan.
+    variance : (n,) float64
+        Of each, across the face, square metres: by how scans differ there, and no less than the
+        columns scatter about a smooth curve.
+    misfit : float
+        Sum of their squared distances from a line of their own, in variances.
+    """
+
+    wall: int
+    face: FaceInterval
+    xy_m: FloatArray
+    variance: FloatArray
+    misfit: float
+
+    @property
+    def middle_m(self) -> FloatArray:
+        """Halfway between its ends, (2,)."""
+        return self.face.ends.mean(axis=0)
+
+
+def sample_face(wall: int, face: FaceInterval) -> FaceSamples | None:
+    """Return a face's samples; None of one that is too short, or that too few points show."""
+    seen, points = face.seen, face.points
+    if face.n_points < ENOUGH_RAYS:
+        return None
+    column = np.floor((seen.occupied_m[points] - face.low_m) / CELL_M).astype(np.int64)
+    pairs = np.column_stack([column, seen.occupied_scan[points]])
+    of_pair, pair, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    places = np.stack([seen.occupied_m[points], seen.occupied_off_m[points]])
+    along_m, off_m = (np.bincount(pair.ravel(), of) / count for of in places)
+    _, row, n_scans = np.unique(of_pair[:, 0], return_inverse=True, return_counts=True)
+    if len(n_scans) < _LEAST_COLUMNS:
+        return None
+    x_m, y_m = (np.bincount(row, of) / n_scans for of in (along_m, off_m))
+    between_scans = np.sum((off_m - y_m[row]) ** 2) / max(len(row) - len(n_scans), 1)
+    variance = np.maximum(between_scans / n_scans, _LEAST_VARIANCE_M2)
+    variance *= max(_misfit(x_m, y_m, variance, 2) / (len(x_m) - 3), 1.0)
+    xy_m = seen.line.at(x_m) + y_m[:, None] * seen.line.normal
+    return FaceSamples(wall, face, xy_m, variance, _misfit(x_m, y_m, variance, 1))
+
+
+def _misfit(x_m: FloatArray, y_m: FloatArray, variance: FloatArray, degree: int) -> float:
+    """Return the squared distances from a fitted polynomial of a degree, in variances."""
+    fitted = np.polynomial.Polynomial.fit(x_m, y_m, degree, w=variance**-0.5)
+    return float(np.sum((y_m - fitted(x_m)) ** 2 / variance))
