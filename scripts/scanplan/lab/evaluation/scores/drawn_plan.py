@@ -9,6 +9,7 @@ import numpy.typing as npt
 import shapely
 
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import trace_arc
 from scanplan.lab.evaluation import length_metrics, plan_metrics
 from scanplan.lab.evaluation.scores.scene import no_lines
 from scanplan.lab.evaluation.scores.score import Rating, read_ratings, transform_lines
@@ -35,8 +36,12 @@ class DrawnPlan:
     face, face_wall : (n,) int
         Numbers of the faces, and of their walls.
     walls_m : (w, 2, 2) float64
+        Of curved walls their chords, a row each.
     wall : (w,) int
     thickness_m : (w,) float64
+    centres_m : (w, 2) float64
+        What curved walls turn around; NaN of straight ones.
+    radii_m : (w,) float64
     openings_m : (o, 2, 2) float64
     opening : (o,) int
     type : (o,) object
@@ -63,6 +68,8 @@ class DrawnPlan:
     walls_m: FloatArray
     wall: IntArray
     thickness_m: FloatArray
+    centres_m: FloatArray
+    radii_m: FloatArray
     openings_m: FloatArray
     opening: IntArray
     type: Array
@@ -122,14 +129,19 @@ def place_plan(
     if confidence is None and "verify" in walls:
         numbers, verify = walls["wall"].tolist(), np.asarray(walls["verify"], bool).tolist()
         ratings["walls"] = Rating(flagged=dict(zip(numbers, verify, strict=True)))
+    walls_m, row = _cut_walls(walls)
+    arc = np.column_stack([_column(walls, of, len(walls["wall"]), np.nan) for of in schemas.ARC])
+    arc = np.asarray(arc, float).reshape(-1, len(schemas.ARC))[row]
     return DrawnPlan(
         faces_m=lines_m[:n_faces],
         column_sides_m=lines_m[n_faces:],
         face=np.asarray(faces["face"]),
         face_wall=np.asarray(faces.get("wall", np.full(n_faces, -1))),
-        walls_m=transform_lines(length_metrics.table_lines_m(walls), motion),
-        wall=np.asarray(walls["wall"]),
-        thickness_m=np.asarray(walls["thickness_m"], float),
+        walls_m=transform_lines(walls_m, motion),
+        wall=np.asarray(walls["wall"])[row],
+        thickness_m=np.asarray(walls["thickness_m"], float)[row],
+        centres_m=transform_lines(arc[:, :2], motion),
+        radii_m=arc[:, 2],
         openings_m=transform_lines(length_metrics.table_lines_m(openings), motion),
         opening=np.asarray(openings["opening"]),
         type=np.asarray(openings["type"], object),
@@ -146,6 +158,18 @@ def place_plan(
         questions=move_shapes(asked.get("geometry", np.empty(0, object)), motion),
         ratings=ratings,
     )
+
+
+def _cut_walls(walls: Columns) -> tuple[FloatArray, IntArray]:
+    """Return the lines (n, 2, 2) of walls, of curved ones chords, and the row of each."""
+    lines_m = length_metrics.table_lines_m(walls)
+    centre_m = [_column(walls, name, len(lines_m), np.nan) for name in schemas.ARC[:2]]
+    cut = [no_lines()]
+    for ends_m, *centre in zip(lines_m, *centre_m, strict=True):
+        corners_m = trace_arc(ends_m, np.array(centre)) if np.isfinite(centre).all() else ends_m
+        cut.append(np.stack([corners_m[:-1], corners_m[1:]], axis=1))
+    rows = np.repeat(np.arange(len(lines_m)), [len(part) for part in cut[1:]])
+    return np.concatenate(cut), rows
 
 
 def says_swing(swing: Array) -> Array:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from scanplan.lab.evaluation.scores import (
+    arc_scores,
     column_scores,
     drawn_plan,
     flag_scores,
@@ -48,8 +49,8 @@ def score_plan(
     -------
     score.Score
         The measures of `wall_scores`, `leaf_scores`, `opening_scores`, `column_scores`,
-        `room_scores`, `thickness_scores` and `flag_scores`. Of a scene that is a part of a floor
-        those alone that do not ask what is false.
+        `arc_scores`, `room_scores`, `thickness_scores` and `flag_scores`. Of a scene that is a part
+        of a floor those alone that do not ask what is false.
     """
     plan = drawn_plan.place_plan(drawn, motion, confidence, height_m)
     known = sight.see_all(truth) if seen is None else seen
@@ -68,6 +69,7 @@ def score_plan(
         scores += [
             leaf_scores.score_leaves(plan, truth, known),
             column_scores.score_columns(plan, truth, known),
+            arc_scores.score_arcs(plan, truth, known),
             thickness_scores.score_thickness(plan, truth),
         ]
     score = join_scores(scores)

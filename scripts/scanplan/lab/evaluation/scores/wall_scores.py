@@ -108,7 +108,8 @@ def _walls(plan: DrawnPlan, cells: FaceCells, kind: IntArray, hosts: IntArray) -
     """Return the walls by what most of their faces are."""
     rows = []
     host_of_cell = hosts[cells.face]
-    for number, line_m in zip(plan.wall.tolist(), plan.walls_m, strict=True):
+    for number in dict.fromkeys(plan.wall.tolist()):
+        lines_m = plan.walls_m[plan.wall == number]
         own = host_of_cell == number
         by_kind_m = np.bincount(kind[own], cells.length_m[own], minlength=len(false_walls.KINDS))
         share = share_or_nan(by_kind_m[0], by_kind_m.sum())
@@ -120,7 +121,7 @@ def _walls(plan: DrawnPlan, cells: FaceCells, kind: IntArray, hosts: IntArray) -
         rows.append(
             Element(
                 "wall",
-                shapely.LineString(line_m),
+                shapely.LineString([lines_m[0, 0], *lines_m[:, 1]]),
                 verdict,
                 number=int(number),
                 agreement=share,

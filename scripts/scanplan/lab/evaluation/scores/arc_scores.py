@@ -1,0 +1,119 @@
+"""Curved walls: how many are drawn as arcs, how many arcs are of curved walls, and how true."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scanplan.geometry import arcs, overlays
+from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
+from scanplan.lab.evaluation.scores.scene import Scene, line_shapes_of
+from scanplan.lab.evaluation.scores.score import Score, element_columns, share_or_nan
+from scanplan.lab.evaluation.scores.sight import Sight
+from scanplan.types import FloatArray, IntArray
+
+_NEAR_M = 0.20  # of a surface, as the farthest that walls are looked for
+_SAME_M = 0.05  # of centres of one circle: vertices of truths are given to 0.1 mm
+_LEAST_SEEN_M = 1.0  # of a curve: less shows no circle
+_LEAST_FACES = 3  # of a run: two chords are on many circles
+
+
+@dataclass(frozen=True, eq=False)
+class _TrueCurve:
+    """The curved faces (k,) about one centre, and the radius that each is at."""
+
+    centre_m: FloatArray
+    faces: IntArray
+    radii_m: FloatArray
+
+
+def score_arcs(plan: DrawnPlan, scene: Scene, sight: Sight) -> Score:
+    """Score curved walls that are drawn as arcs.
+
+    A true arc is all curved wall about one centre. It is found where arcs are drawn along half of
+    what could be seen of it; a drawn arc is right where true curved faces are along half of it.
+
+    Returns
+    -------
+    Score
+        `arcs_true` of which a metre could be seen, `arcs_found`, `arc_recall`, `arcs_drawn`,
+        `arc_precision`; `arc_radius_error_m` and `arc_centre_error_m`, the means over those found,
+        by the drawn wall that is longest there: of its sides' radii, and where it turns around.
+    """
+    drawn = np.unique(plan.wall[np.isfinite(plan.centres_m[:, 0])])
+    axes = {number: overlays.unite_lines(_chords(plan, number)) for number in drawn.tolist()}
+    strips = {of: overlays.buffer_shapes(axis, _NEAR_M) for of, axis in axes.items()}
+    faces = line_shapes_of(scene.inner_m)
+    radius_off_m, centre_off_m, n_true = [], [], 0
+    for curve in _find_true_curves(scene):
+        is_own = sight.visible & np.isin(sight.cells.face, curve.faces)
+        seen_m = np.bincount(
+            sight.cells.face[is_own], sight.cells.length_m[is_own], minlength=len(faces)
+        )
+        if seen_m.sum() < _LEAST_SEEN_M:
+            continue
+        n_true += 1
+        seen = overlays.unite_lines(faces[seen_m > 0])
+        along_m = {of: overlays.intersect_lines(seen, strips[of]).length for of in axes}
+        if along_m and 2 * sum(along_m.values()) >= seen.length:
+            best = max(along_m, key=lambda of: along_m[of])
+            row = int(np.flatnonzero(plan.wall == best)[0])
+            half_m = np.nan_to_num(plan.thickness_m[row]) / 2
+            sides_m = np.unique(plan.radii_m[row] + np.array([-half_m, half_m]))
+            off_m = np.abs(sides_m[:, None] - curve.radii_m).min(axis=1)
+            radius_off_m.append(float(off_m.mean()))
+            centre_off_m.append(float(np.hypot(*(plan.centres_m[row] - curve.centre_m))))
+    curved = overlays.buffer_shapes(overlays.unite_lines(faces[scene.curved]), _NEAR_M)
+    n_right = sum(
+        2 * overlays.intersect_lines(axis, curved).length >= axis.length for axis in axes.values()
+    )
+    measures: dict[str, float] = {
+        "arcs_true": n_true,
+        "arcs_found": len(radius_off_m),
+        "arc_recall": share_or_nan(len(radius_off_m), n_true),
+        "arcs_drawn": len(axes),
+        "arc_precision": share_or_nan(int(n_right), len(axes)),
+        "arc_radius_error_m": float(np.mean(radius_off_m)) if radius_off_m else np.nan,
+        "arc_centre_error_m": float(np.mean(centre_off_m)) if centre_off_m else np.nan,
+    }
+    return Score(measures, element_columns([]))
+
+
+def _chords(plan: DrawnPlan, number: int) -> np.ndarray:
+    return line_shapes_of(plan.walls_m[plan.wall == number])
+
+
+def _find_true_curves(scene: Scene) -> list[_TrueCurve]:
+    """Return the curves of a scene: runs of curved faces that lie on a circle, by its centre."""
+    rows = np.flatnonzero(scene.curved)
+    runs = overlays.merge_lines(overlays.unite_lines(line_shapes_of(scene.inner_m[rows])))
+    curves: list[_TrueCurve] = []
+    for run in shapely.get_parts(runs):
+        corners_m = shapely.get_coordinates(run)
+        if len(corners_m) <= _LEAST_FACES:
+            continue
+        same = np.ones(len(corners_m))
+        group = np.zeros(len(corners_m), np.int64)
+        fitted = arcs.fit_circles(corners_m, same, group, _guess_centre(corners_m))
+        if fitted is None:
+            continue
+        own = rows[shapely.distance(line_shapes_of(scene.inner_m[rows]), run) < arcs.SAGITTA_M]
+        alike = (c for c in curves if np.hypot(*(c.centre_m - fitted.centre_m)) <= _SAME_M)
+        known = next(alike, None)
+        if known is None:
+            curves.append(_TrueCurve(fitted.centre_m, own, fitted.radii_m))
+            continue
+        curves.remove(known)
+        faces = np.union1d(known.faces, own)
+        radii_m = np.append(known.radii_m, fitted.radii_m)
+        curves.append(_TrueCurve(known.centre_m, faces, radii_m))
+    return curves
+
+
+def _guess_centre(corners_m: FloatArray) -> FloatArray:
+    """Return the centre of the circle through corners, by linear least squares."""
+    middle_m = corners_m.mean(axis=0)
+    off_m = corners_m - middle_m
+    square = np.sum(off_m**2, axis=1)
+    known = np.column_stack([2 * off_m, np.ones(len(off_m))])
+    return middle_m + np.linalg.lstsq(known, square, rcond=None)[0][:2]
