@@ -7,9 +7,10 @@ from matplotlib.path import Path
 
 from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
 from scanplan.exports.sheet.lettering import FONT, POINTS_PER_MM, font_size_mm, rotation
-from scanplan.exports.sheet.marks import Mark
+from scanplan.exports.sheet.marks import Mark, flatten
 from scanplan.exports.sheet.styles import STYLES
 
+_PER_RAD = 60.0  # short lines of an arc: 0.01 mm off at a radius of 300 mm
 _ALIGNMENTS = {0.0: "left", 0.5: "center", 1.0: "right"}
 
 
@@ -62,12 +63,13 @@ def draw_sheet(sheet: Sheet) -> Figure:
 
 
 def _make_path(mark: Mark) -> Path:
+    paths = [flatten(path, _PER_RAD) for path in mark.paths]
     codes = [
         [
             Path.MOVETO,
             *[Path.LINETO] * (len(path) - 2),
             Path.CLOSEPOLY if mark.closed else Path.LINETO,
         ]
-        for path in mark.paths
+        for path in paths
     ]
-    return Path(np.concatenate([path[:, :2] for path in mark.paths]), np.concatenate(codes))
+    return Path(np.concatenate(paths), np.concatenate(codes))

@@ -229,7 +229,7 @@ def _add_mark(space: BaseLayout, mark: Mark, factor: float) -> list[DXFGraphic]:
     if mark.verify:
         layer = doubt_layer("A-WALL" if mark.kind == "verify" else layer)
     entities: list[DXFGraphic] = []
-    for path in mark.paths:
+    for path in mark.bent_paths:
         corners = path * [factor, factor, 1]
         if mark.closed:
             corners = corners[:-1]

@@ -42,8 +42,9 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
     -------
     str
         Coordinates in metres rounded to 0.1 mm. Features are of `kind` face and wall (LineString; a
-        wall's is its centreline, or its only face), opening (LineString from one side of it to the
-        other), room, furniture, column and leaf (Polygon). Their properties are the columns of the
+        wall's is its centreline, or its only face, of a curved one in chords within 2 mm), opening
+        (LineString from one side of it to the other), room, furniture, column and leaf (Polygon).
+        Their properties are the columns of the
         tables, null where not known.
     """
     collection = {
@@ -54,6 +55,10 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
         "units": "m",
     }
     walls = list(_line_features("wall", plan.walls))
+    for row in np.flatnonzero(plan.wall_shapes.is_bent).tolist():
+        corners_m = shapely.get_coordinates(plan.axes[row]).tolist()
+        walls[row]["geometry"]["coordinates"] = [[_round(x), _round(y)] for x, y in corners_m]
+        walls[row]["properties"]["length_m"] = _round(plan.lengths_m[row])
     if evidence is not None and len(evidence["wall"]):
         _add_scans(walls, evidence)
     features = [

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import Any
 
 import ifcopenshell
@@ -14,6 +15,7 @@ from shapely.geometry import Polygon
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_colours import read_colour
 from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.geometry.arcs import NO_CIRCLES, SAGITTA_M, bend_path, middle_of_bulge, turn_rad
 from scanplan.types import Array, FloatArray
 
 _APPLICATION = "scanplan"
@@ -128,10 +130,19 @@ class IfcModel:
         axes = self.new("IfcAxis2Placement3D", self.point(place_m), z, x)
         return self.new("IfcLocalPlacement", relative_to, axes)
 
-    def prism(self, polygon: Polygon, low_m: float, high_m: float) -> entity_instance:
-        """Return a solid over the ground of a polygon (local x, y), from `low_m` to `high_m`."""
+    def prism(
+        self,
+        polygon: Polygon,
+        low_m: float,
+        high_m: float,
+        circles_m: FloatArray = NO_CIRCLES,
+    ) -> entity_instance:
+        """Return a solid over the ground of a polygon (local x, y), from `low_m` to `high_m`.
+
+        Where its outline follows one of some circles (k, 3), it is an arc.
+        """
         rings = shapely.get_rings(shapely.orient_polygons(polygon))
-        outer, *inner = [self._polyline(shapely.get_coordinates(ring)) for ring in rings]
+        outer, *inner = [self._outline(shapely.get_coordinates(ring), circles_m) for ring in rings]
         if inner:
             profile = self.new("IfcArbitraryProfileDefWithVoids", "AREA", None, outer, inner)
         else:
@@ -161,16 +172,28 @@ class IfcModel:
         axes = self.new("IfcAxis2Placement3D", self.point((0, 0, height_m)), facing, along)
         return self._connection(axes, shapely.transform(polygon, lambda xy: xy * (1.0, side)))
 
+    def arc(self, ends_m: FloatArray, centre_m: FloatArray) -> entity_instance:
+        """Return the shorter arc from one end to another (2, 2) around a centre (local x, y)."""
+        from_centre_m = ends_m - centre_m
+        first, second = (self.point(xy) for xy in ends_m.tolist())
+        axes = self.new("IfcAxis2Placement2D", self.point(centre_m.tolist()), None)
+        circle = self.new("IfcCircle", axes, float(np.hypot(*from_centre_m.T).mean()))
+        is_left = turn_rad(from_centre_m[1], from_centre_m[0]) > 0
+        return self.new("IfcTrimmedCurve", circle, [first], [second], bool(is_left), "CARTESIAN")
+
     def shape(
-        self, solids: Sequence[entity_instance], axis: FloatArray | None = None
+        self,
+        solids: Sequence[entity_instance],
+        axis: FloatArray | None = None,
+        curve: entity_instance | None = None,
     ) -> entity_instance:
-        """Return a product's shape: solids, and the line (n, 2) that it runs along, if any."""
+        """Return a product's shape: solids, and the line (n, 2) or curve it runs along, if any."""
         bodies = self.new("IfcShapeRepresentation", self.body, "Body", "SweptSolid", solids)
         if axis is None:
             return self.new("IfcProductDefinitionShape", None, None, [bodies])
-        line = self._polyline(axis)
-        curve = self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line])
-        return self.new("IfcProductDefinitionShape", None, None, [curve, bodies])
+        line = self._polyline(axis) if curve is None else curve
+        along = self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line])
+        return self.new("IfcProductDefinitionShape", None, None, [along, bodies])
 
     def aggregate(self, whole: entity_instance, parts: Sequence[entity_instance]) -> None:
         """Make parts the parts of a whole."""
@@ -341,6 +364,22 @@ class IfcModel:
         surface = self.new("IfcCurveBoundedPlane", plane, outer, inner)
         return self.new("IfcConnectionSurfaceGeometry", surface, None)
 
+    def _outline(self, points_m: FloatArray, circles_m: FloatArray) -> entity_instance:
+        """Return a closed line through points, in arcs where it follows circles."""
+        path = bend_path(points_m, circles_m, SAGITTA_M)
+        if not path[:, 2].any():
+            return self._polyline(points_m)
+        corners = path[:-1, :2].tolist()
+        segments = []
+        for row, (begin, end) in enumerate(pairwise([*range(1, len(path)), 1])):
+            if path[row, 2]:
+                corners.append(middle_of_bulge(path[row : row + 2]).tolist())
+                segments.append(self.new("IfcArcIndex", (begin, len(corners), end)))
+            else:
+                segments.append(self.new("IfcLineIndex", (begin, end)))
+        points = self.new("IfcCartesianPointList2D", corners)
+        return self.new("IfcIndexedPolyCurve", points, segments, False)
+
     def _polyline(self, points_m: Array) -> entity_instance:
         return self.new("IfcPolyline", [self.point(xy) for xy in points_m.tolist()])
 
@@ -358,8 +397,18 @@ class Frame:
 
     def move_here(self, polygon: Polygon) -> Polygon:
         """Return a polygon of the map in this frame."""
+        return shapely.transform(
+            polygon, lambda xy_m: np.asarray(self.place_here(xy_m), np.float64)
+        )
+
+    def place_here(self, xy_m: FloatArray) -> FloatArray:
+        """Return places (..., 2) of the map in this frame."""
         turn = np.array([self.along, (-self.along[1], self.along[0])])
-        return shapely.transform(polygon, lambda xy_m: (xy_m - self._start) @ turn.T)
+        return (xy_m - self._start) @ turn.T
+
+    def move_circles_here(self, circles_m: FloatArray) -> FloatArray:
+        """Return circles (k, 3) of the map, x and y of centre and radius, in this frame."""
+        return np.column_stack([self.place_here(circles_m[:, :2]), circles_m[:, 2]])
 
     def placement(self, model: IfcModel) -> entity_instance:
         """Return the placement of a product in this frame, on the storey's floor."""

@@ -1,8 +1,9 @@
 """The sheet of a plan as SVG: real text, a group for each kind of element, titles."""
 
+import math
 from collections.abc import Iterator
 from html import escape
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words, plan_extent_mm
 from scanplan.exports.sheet.lettering import (
@@ -70,9 +71,23 @@ def _format_mark(mark: Mark, height: float) -> str:
 
 
 def _format_path(path: FloatArray, height: float, *, closed: bool) -> str:
-    points = path[:-1] if closed else path
-    drawn = "L".join(f"{_number(x)} {_number(height - y)}" for x, y, _ in points)
-    return f"M{drawn}{'Z' if closed else ''}"
+    # an outline is closed by a line, but where it ends in an arc
+    points = path[:-1] if closed and path[-2, 2] == 0 else path
+    places = [f"{_number(x)} {_number(height - y)}" for x, y, _ in points]
+    steps = [_format_step(*pair) for pair in pairwise(points)]
+    drawn = "".join(f"{step}{place}" for step, place in zip(["M", *steps], places, strict=True))
+    return f"{drawn}{'Z' if closed else ''}"
+
+
+def _format_step(start: FloatArray, end: FloatArray) -> str:
+    """Return what leads from one corner to the next: a line, or an arc by its bulge."""
+    bulge = float(start[2])
+    if bulge == 0:
+        return "L"
+    radius = math.dist(start[:2], end[:2]) * (1 + bulge**2) / (4 * abs(bulge))
+    # y points down here: what turns left on the sheet turns against SVG's sense
+    is_large, is_right = int(abs(bulge) > 1), int(bulge < 0)
+    return f"A{_number(radius)} {_number(radius)} 0 {is_large} {is_right} "
 
 
 def _format_word(word: Word, height: float) -> str:

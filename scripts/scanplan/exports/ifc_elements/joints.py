@@ -17,7 +17,10 @@ from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.opening_extents import vertical_extent_m
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, FloatArray
+
+_TURN_RAD = np.radians(20)  # of a boundary: outlines run within 30 degrees of an element's way
 
 
 def connect_walls(model: IfcModel, storey: StoreyPlan, walls: Sequence[entity_instance]) -> None:
@@ -90,7 +93,27 @@ def _wall_sides(storey: StoreyPlan, walls: Sequence[entity_instance]) -> Iterato
     for row, line_m in enumerate(floorplan.centrelines_m(plan.walls)):
         extent_m = (0.0, float(plan.heights_m[row]))
         is_external = bool(storey.external[row])
-        yield _Side(walls[row], reaches[row], Frame(line_m).along, extent_m, is_external)
+        for along, reach in _straight_reaches(plan, row, line_m, reaches[row]):
+            yield _Side(walls[row], reach, along, extent_m, is_external)
+
+
+def _straight_reaches(
+    plan: FloorPlan, row: int, line_m: FloatArray, reach: BaseGeometry
+) -> Iterator[tuple[FloatArray, BaseGeometry]]:
+    """Yield the directions of a wall, and where each is that of outlines within its reach."""
+    if not plan.wall_shapes.is_bent[row]:
+        yield Frame(line_m).along, reach
+        return
+    centre_m = plan.wall_shapes.centres_m[row]
+    corners_m = plan.wall_shapes.trace(row)
+    n_parts = int(np.ceil(plan.lengths_m[row] / plan.walls["arc_radius_m"][row] / _TURN_RAD))
+    at = np.unique(np.linspace(0, len(corners_m) - 1, n_parts + 1).round().astype(int))
+    for begin_m, end_m in pairwise(corners_m[at]):
+        # as far outwards as walls are thick at most
+        sector = shapely.Polygon(
+            [centre_m, *(centre_m + 2 * (np.array([begin_m, end_m]) - centre_m))]
+        )
+        yield Frame(np.array([begin_m, end_m])).along, overlays.intersect_areas(reach, sector)
 
 
 def _opening_sides(storey: StoreyPlan, openings: Sequence[Opening]) -> Iterator[_Side]:

@@ -35,6 +35,7 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     plan = storey.plan
     height_m = float(plan.heights_m[row])
     frame = Frame(floorplan.centrelines_m(plan.walls)[row])
+    circles_m = frame.move_circles_here(plan.circles_m)
     number = str(plan.walls["wall"][row])
     wall = model.known(
         "IfcWall",
@@ -43,10 +44,13 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
         Tag=number,
         ObjectPlacement=frame.placement(model),
     )
-    body = model.prism(frame.move_here(plan.bodies[row]), 0.0, height_m)
+    body = model.prism(frame.move_here(plan.bodies[row]), 0.0, height_m, circles_m)
     state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
     model.colour([body], colour_of(plan.walls, row, state))
-    wall.Representation = model.shape([body], np.array([(0, 0), (frame.length_m, 0)]))
+    axis = np.array([(0, 0), (frame.length_m, 0)])
+    centre_m = frame.place_here(plan.wall_shapes.centres_m[row])
+    curve = model.arc(axis, centre_m) if plan.wall_shapes.is_bent[row] else None
+    wall.Representation = model.shape([body], axis, curve)
     common = {"IsExternal": ("IfcBoolean", bool(storey.external[row]))}
     model.describe(wall, "Pset_WallCommon", common, unknown=["LoadBearing"])
     _describe_wall(model, storey, row, wall)
@@ -62,6 +66,7 @@ def _name_wall(storey: StoreyPlan, row: int) -> str:
         f"Wall {plan.walls['wall'][row]}",
         "exterior" if storey.external[row] else "interior",
         f"{thickness_cm:.0f} cm" if plan.thick[row] else "thickness assumed",
+        f"radius {plan.walls['arc_radius_m'][row]:.2f} m" if plan.wall_shapes.is_bent[row] else "",
         f"{plan.heights_m[row]:.2f} m high" if plan.low[row] else "",
         "inferred" if plan.walls["state"][row] == "inferred" else "",
     ]
@@ -70,7 +75,7 @@ def _name_wall(storey: StoreyPlan, row: int) -> str:
 
 def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:
     plan = storey.plan
-    length_m = Frame(floorplan.centrelines_m(plan.walls)[row]).length_m
+    length_m = float(plan.lengths_m[row])
     height_m = float(plan.heights_m[row])
     left_m, right_m = plan.sides_m
     body = plan.bodies[row]
@@ -121,6 +126,8 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
         **describe_doubt(columns, row),
         "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row] and columns["n_points"][row])),
         "OffsetStandardDeviation": known_m("sigma_offset_m"),
+        "Radius": known_m("arc_radius_m"),
+        "RadiusStandardDeviation": known_m("sigma_radius_m"),
         "StartStandardDeviation": known_m("sigma_end0_m"),
         "EndStandardDeviation": known_m("sigma_end1_m"),
         "Residual": known_m("rmse_m"),

@@ -287,7 +287,7 @@ def _plan_marks(sheet: Sheet) -> Iterator[Mark]:
             continue
         yield Mark(
             mark.kind,
-            [straight(page.to_paper(path[:, :2])) for path in mark.paths],
+            [np.column_stack([page.to_paper(p[:, :2]), p[:, 2]]) for p in mark.bent_paths],
             mark.closed,
             mark.element,
             mark.title,

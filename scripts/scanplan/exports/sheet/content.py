@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import NO_CIRCLES
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns, FloatArray
@@ -18,6 +19,8 @@ from scanplan.validation import doubts
 _FACTS = {
     "wall": (
         "thickness_m",
+        "arc_radius_m",
+        "sigma_radius_m",
         "sigma_offset_m",
         "sigma_end0_m",
         "sigma_end1_m",
@@ -67,7 +70,7 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     for row, area in enumerate(plan.areas):
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
-        yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]))
+        yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]), of=plan)
     for number, part in enumerate([*plan.hidden_floor, *plan.enclosed_ground]):
         yield _area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
     unseen_m = floorplan.centrelines_m(plan.unseen)
@@ -77,7 +80,7 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     assumed = [*_polygons(plan.assumed)]
     for number, part in enumerate(assumed):
         title = f"wall, assumed {plan.assumed_thickness_m:.2f} m thick"
-        yield _area("assumed", part, f"assumed-{number}", title)
+        yield _area("assumed", part, f"assumed-{number}", title, of=plan)
     known = {"inferred": plan.walls["state"] == "inferred", "low": plan.low}
     known["inferred"] = known["inferred"] & ~plan.low
     known["wall"] = ~known["inferred"] & ~known["low"]
@@ -86,19 +89,26 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
         shape = overlays.subtract_areas(_footprint(plan, known[kind]), above)
         above = overlays.unite_each(above, shape)
         for number, part in enumerate(_polygons(shape)):
-            yield _area(kind, part, f"{kind}-{number}", kind)
+            yield _area(kind, part, f"{kind}-{number}", kind, of=plan)
     for kind, state in (("surface", "observed"), ("surface-inferred", "inferred")):
         for number, line in enumerate(plan.single(state)):
             path = [straight(shapely.get_coordinates(line))]
-            yield Mark(kind, path, element=f"{kind}-{number}", title=f"{state} surface")
+            yield Mark(
+                kind,
+                path,
+                element=f"{kind}-{number}",
+                title=f"{state} surface",
+                circles_m=plan.circles_m,
+            )
 
 
 def draw_axes(plan: FloorPlan) -> Iterator[Mark]:
     """Yield the line of each wall, with what is known of it: not on paper, for CAD."""
-    for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
+    for row, axis in enumerate(plan.axes):
         number = plan.walls["wall"][row]
         facts = facts_of("wall", plan.walls, row)
-        yield Mark("axis", [straight(ends_m)], element=f"wall-{number}", facts=facts)
+        path = straight(shapely.get_coordinates(axis))
+        yield Mark("axis", [path], element=f"wall-{number}", facts=facts, circles_m=plan.circles_m)
 
 
 def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
@@ -111,7 +121,8 @@ def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
         number = plan.walls["wall"][row]
         facts = facts_of("wall", plan.walls, row)
         title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
-        yield _area("verify", plan.bodies[row], f"verify-wall-{number}", title, facts, verify=True)
+        element = f"verify-wall-{number}"
+        yield _area("verify", plan.bodies[row], element, title, facts, verify=True, of=plan)
     for row, end_m in doubts.list_loose_ends(plan):
         number, facts = plan.walls["wall"][row], facts_of("wall", plan.walls, row)
         around = overlays.buffer_shapes(shapely.Point(end_m), _END_M)
@@ -190,10 +201,12 @@ def _area(
     facts: Facts | None = None,
     *,
     verify: bool = False,
+    of: FloorPlan | None = None,
 ) -> Mark:
     rings = shapely.get_rings(shapely.get_parts(shape))
     paths = [straight(shapely.get_coordinates(ring)) for ring in rings]
-    return Mark(kind, paths, True, element, title, facts or {}, verify)
+    circles_m = NO_CIRCLES if of is None else of.circles_m
+    return Mark(kind, paths, True, element, title, facts or {}, verify, circles_m)
 
 
 def _polygons(shape: BaseGeometry) -> Iterator[Polygon]:

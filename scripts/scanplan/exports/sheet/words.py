@@ -108,8 +108,13 @@ def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word
     """Yield the heights of walls that end below the ceiling, and marks of doubt."""
     doubtful, loose_m = is_doubtful(plan.walls), dict(list_loose_ends(plan))
     left_m, right_m = plan.sides_m
+    radii_m = _find_radii_m(plan)
     for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
-        text = f"{plan.heights_m[row]:.2f} high" if plan.low[row] else ""
+        parts = [f"{plan.heights_m[row]:.2f} high" if plan.low[row] else ""]
+        if row in radii_m:
+            parts.append(f"R {radii_m[row]:.2f}")
+            ends_m = _tangent_m(plan, row)
+        text = ", ".join(filter(None, parts))
         about = str(plan.walls["about"][row]) if doubtful[row] and "about" in plan.walls else ""
         words = [(_join_words(text, mark_doubt(about, verify=bool(doubtful[row]))), ends_m)]
         if row in loose_m:
@@ -122,6 +127,28 @@ def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word
                 element = f"wall-{plan.walls['wall'][row]}"
                 ends = page.to_paper(along_m)
                 yield from _place_beside(page, kind, said, ends, thick_mm, element, space)
+
+
+def _find_radii_m(plan: FloorPlan) -> dict[int, float]:
+    """Return the radius to state at curved walls, by row: of each circle at its longest wall.
+
+    It is that of the side that was seen; of two sides that of the inner one, as it is measured.
+    """
+    shapes = plan.wall_shapes
+    chosen: dict[tuple[float, ...], int] = {}
+    for row in np.argsort(-plan.lengths_m, kind="stable").tolist():
+        if shapes.is_bent[row]:
+            circle = (*shapes.centres_m[row].tolist(), float(plan.walls["arc_radius_m"][row]))
+            chosen.setdefault(circle, row)
+    inside_m = np.where(plan.thick, np.nan_to_num(plan.walls["thickness_m"]) / 2, 0.0)
+    return {row: float(plan.walls["arc_radius_m"][row] - inside_m[row]) for row in chosen.values()}
+
+
+def _tangent_m(plan: FloorPlan, row: int) -> FloatArray:
+    """Return the chord (2, 2) in the middle of a curved wall, which words stand beside."""
+    corners_m = plan.wall_shapes.trace(row)
+    middle = (len(corners_m) - 1) // 2
+    return corners_m[middle : middle + 2]
 
 
 def _join_words(text: str, mark: str) -> str:
