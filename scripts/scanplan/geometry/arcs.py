@@ -106,7 +106,6 @@ def bend_path(corners_m: FloatArray, circles_m: FloatArray, off_m: float) -> Flo
         while (
             last < len(owner)
             and owner[last] == owner[first] >= 0
-            and turned[last] * turned[first] > 0
             and abs(turned[first : last + 1].sum()) <= _MOST_TURN_RAD
         ):
             last += 1

@@ -131,6 +131,21 @@ class PlanWall(Span):
         low_m, high_m = np.sort(along_m).tolist()
         return low_m, high_m
 
+    def offset_m(self, xy_m: FloatArray) -> FloatArray:
+        """Return how far places (..., 2) are off its line, of a curved wall off its circle."""
+        if self.bend is None:
+            return self.line.offset_m(xy_m)
+        from_centre_m = np.hypot(*np.moveaxis(xy_m - self.bend.centre_m, -1, 0))
+        return self._towards_centre * (self.bend.radius_m - from_centre_m)
+
+    def onto_line(self, xy_m: FloatArray) -> FloatArray:
+        """Return places (n, 2) moved onto its line, of a curved wall onto its circle."""
+        if self.bend is None:
+            return self.line.at(self.line.along_m(xy_m))
+        outward_m = xy_m - self.bend.centre_m
+        scale = self.bend.radius_m / np.hypot(*outward_m.T)
+        return self.bend.centre_m + scale[:, None] * outward_m
+
     def normal_at(self, place_m: FloatArray) -> FloatArray:
         """Return the unit normal (2,) on its left beside a place (2,)."""
         if self.bend is None:

@@ -10,6 +10,7 @@ from shapely.geometry import Polygon
 from scanplan.geometry import arcs, overlays
 from scanplan.geometry.tolerances import SMALLEST_M2
 from scanplan.plan import wall_footprints
+from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, FloatArray
 
 
@@ -118,13 +119,15 @@ class WallShapes:
         That at its first end is in its place, that at its second beyond all walls.
         """
         bent = np.flatnonzero(self.is_bent)
+        # beyond what joins walls at their ends
+        whole_m = 2 * (float((self.left_m + self.right_m).max(initial=0.0)) + END_M)
         lines_m = np.concatenate([self.lines_m, self.lines_m[bent]])
         for row, stub in self._second_stubs():
             from_centre_m = self.lines_m[row] - self.centres_m[row]
             ways = self._turns(row) * np.column_stack([-from_centre_m[:, 1], from_centre_m[:, 0]])
             ways /= np.hypot(*ways.T)[:, None]
             length_m = arcs.arc_length_m(self.lines_m[row], self.centres_m[row])
-            reach_m = min(float(self.left_m[row] + self.right_m[row]), length_m / 2)
+            reach_m = min(whole_m, length_m / 2)
             lines_m[row, 1] = lines_m[row, 0] + reach_m * ways[0]
             lines_m[stub, 0] = lines_m[stub, 1] - reach_m * ways[1]
         left_m, right_m = (

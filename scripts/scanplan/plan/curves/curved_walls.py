@@ -14,7 +14,7 @@ from scanplan.plan.curves import arc_faces, circle_search
 from scanplan.plan.curves.circle_search import INNER, OUTER, Curve
 from scanplan.plan.curves.face_samples import FaceSamples, sample_face
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.openings import CLOSED, UNKNOWN, Opening, OpeningSettings, classify_gap
+from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, Opening, OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import Bend, PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.plan.wall_pairs import PairSettings
@@ -144,12 +144,15 @@ class _Ring:
         opening: OpeningSettings,
         reading: RaySettings,
     ) -> Iterator[PlanWall]:
-        """Yield the walls along the curve, parted where it is open or not known for long."""
+        """Yield the walls along the curve, parted where it is not known what is there.
+
+        What rays go through between its faces is a way, as in a straight wall, or a window.
+        """
         first = self._begin_rad
         spans = np.column_stack(
             self._turned(np.array([of.face.ends for of in self.samples]), first)
         )
-        ways = self._choose_openings(chords, spans, first)
+        ways = self._choose_openings(chords, spans, first, opening.min_opening_m)
         known = np.concatenate([spans, np.array([of[0] for of in ways]).reshape(-1, 2)])
         closed: list[tuple[FloatArray, Opening]] = []
         low, high = float(known.min()), float(known.max())
@@ -158,6 +161,9 @@ class _Ring:
             gap = self._classify(first + span, rays, opening, reading)
             if gap.state == CLOSED:
                 closed.append((span, gap))
+            elif gap.state == OPEN and gap.n_rays:
+                kind = "window" if gap.is_above_wall else "door"
+                ways.append((span, replace(gap, kind=kind)))
             else:
                 breaks += span.tolist()
         # around the whole circle nothing parts its end from where it began
@@ -165,10 +171,16 @@ class _Ring:
         breaks = [low, *breaks, low + 2 * np.pi] if goes_around else [low, *breaks[:-1]]
         for low, high in np.sort(breaks).reshape(-1, 2).tolist():
             for begin, end in itertools.pairwise(_part(low, high, [of for of, _ in ways])):
-                yield self._draw_wall(first, (begin, end), chords, ways, closed)
+                wall = self._draw_wall(first, (begin, end), chords, ways, closed)
+                if wall.members:
+                    yield wall
 
     def _choose_openings(
-        self, chords: Sequence[PlanWall], spans: FloatArray, first: float
+        self,
+        chords: Sequence[PlanWall],
+        spans: FloatArray,
+        first: float,
+        min_width_m: float,
     ) -> list[tuple[FloatArray, Opening]]:
         """Return the openings of chords, each once, with from where to where each reaches.
 
@@ -188,7 +200,9 @@ class _Ring:
             others = [np.clip(other, *span) for other, _ in chosen]
             common = sum(float(np.ptp(other)) for other in others)
             if 2 * np.ptp(free, axis=1).sum() > np.ptp(span) and 2 * common < np.ptp(span):
-                chosen.append((span if gap.is_above_wall else _widest(free), gap))
+                way = span if gap.is_above_wall else _widest(free)
+                if np.ptp(way) * np.mean(self._radii_m) >= min_width_m:
+                    chosen.append((way, gap))
         return chosen
 
     def _classify(

@@ -176,7 +176,7 @@ def _find_line_gaps(
     walls' strips.
     """
     gaps_m: list[FloatArray] = []
-    for wall in walls:
+    for wall in [wall for wall in walls if wall.bend is None]:
         reach_m = max(wall.length_m, 2 * max_door_m) if wall.right else wall.length_m
         for end_m, way_m in ((wall.low_m, -reach_m), (wall.high_m, reach_m)):
             gap_m = _find_free_line(wall, end_m, way_m, free, unpaired_m)
@@ -235,13 +235,15 @@ def _solid_m(wall: PlanWall, end_m: float) -> float:
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:
     """Return a line's ends (2, 2) moved onto the line of the wall nearest to both, if one is."""
     way = ends_m[1] - ends_m[0]
+    middle_m = ends_m.mean(axis=0)
     least = math.cos(intersections.LEAST_RAD) * math.hypot(*way)
-    off_m, nearest = CORNER_M, None
+    off_m, nearest_m = CORNER_M, ends_m
     for wall in walls:
-        farthest_m = float(np.abs(wall.line.offset_m(ends_m)).max())
-        if farthest_m < off_m and abs(wall.line.direction @ way) >= least:
-            off_m, nearest = farthest_m, wall
-    return ends_m if nearest is None else nearest.line.at(nearest.line.along_m(ends_m))
+        normal = wall.normal_at(middle_m)
+        farthest_m = float(np.abs(wall.offset_m(ends_m)).max())
+        if farthest_m < off_m and abs(normal[1] * way[0] - normal[0] * way[1]) >= least:
+            off_m, nearest_m = farthest_m, wall.onto_line(ends_m)
+    return nearest_m
 
 
 def _choose_ways(ways_m: Sequence[FloatArray], solid: BaseGeometry) -> list[FloatArray]:
