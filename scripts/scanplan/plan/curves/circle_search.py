@@ -14,6 +14,7 @@ from scanplan.plan.tolerances import CORNER_M, NOISE_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _ODDS = 1000.0  # that faces which meet are straight: of 1,000 walls one is curved
+_PARALLEL = 1e-3  # sine: a chord of a metre on a circle of a kilometre bows by 0.1 mm
 _MOST_ROUNDS = 10  # of faces gathered by a circle and the circle fitted to them; two to four are
 INNER, OUTER = 0, 1
 """Sides of a curved wall, as the circles of `arcs.fit_circles`: facing its centre, and away."""
@@ -114,6 +115,9 @@ class _Faces:
             circles = self._fit(rows, sides, centre_m)
             if circles is None or side not in sides:
                 return None
+            # of two walls in a corner nothing else needs to be looked at
+            if np.mean(circles.residual_m**2) > NOISE_M**2:
+                return None
             radius_m = float(circles.radii_m[np.unique(sides) == side][0])
             gathered = self._gather(circles.centre_m, radius_m, side, first)
             if gathered is None:
@@ -140,7 +144,7 @@ class _Faces:
         pair = [first, second]
         turn = np.column_stack([self._normal[first], -self._normal[second]])
         apart_m = self._middle_m[second] - self._middle_m[first]
-        if abs(np.linalg.det(turn)) < arcs.SAGITTA_M:
+        if abs(np.linalg.det(turn)) < _PARALLEL:
             return None
         ahead_m = np.linalg.solve(turn, apart_m)
         # both face the centre, or neither; chords of one circle are about as far from it

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scanplan.geometry import arcs, overlays
+from scanplan.geometry import overlays
+from scanplan.lab.evaluation.opening_metrics import unit_directions
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
 from scanplan.lab.evaluation.scores.scene import Scene, line_shapes_of
 from scanplan.lab.evaluation.scores.score import Score, element_columns, share_or_nan
@@ -14,8 +15,10 @@ from scanplan.types import FloatArray, IntArray
 
 _NEAR_M = 0.20  # of a surface, as the farthest that walls are looked for
 _SAME_M = 0.05  # of centres of one circle: vertices of truths are given to 0.1 mm
+_BESIDE_M = 0.3  # around the sides of one wall: half of what one is thick at most
 _LEAST_SEEN_M = 1.0  # of a curve: less shows no circle
-_LEAST_FACES = 3  # of a run: two chords are on many circles
+_LEAST_FACES = 3  # of a curve: the lines of two always meet
+_ROUNDS = 5  # of centres without jambs, of which a ring has few: two settle it
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,36 +87,40 @@ def _chords(plan: DrawnPlan, number: int) -> np.ndarray:
 
 
 def _find_true_curves(scene: Scene) -> list[_TrueCurve]:
-    """Return the curves of a scene: runs of curved faces that lie on a circle, by its centre."""
+    """Return the curves of a scene: curved faces near to each other, those of one centre as one."""
     rows = np.flatnonzero(scene.curved)
-    runs = overlays.merge_lines(overlays.unite_lines(line_shapes_of(scene.inner_m[rows])))
-    curves: list[_TrueCurve] = []
-    for run in shapely.get_parts(runs):
-        corners_m = shapely.get_coordinates(run)
-        if len(corners_m) <= _LEAST_FACES:
+    lines = line_shapes_of(scene.inner_m[rows])
+    near = overlays.unite_areas(overlays.buffer_shapes(lines, _BESIDE_M))
+    found: list[_TrueCurve] = []
+    for part in shapely.get_parts(near):
+        own = rows[shapely.intersects(lines, part)]
+        curve = _fit_curve(scene.inner_m, own)
+        if curve is None:
             continue
-        same = np.ones(len(corners_m))
-        group = np.zeros(len(corners_m), np.int64)
-        fitted = arcs.fit_circles(corners_m, same, group, _guess_centre(corners_m))
-        if fitted is None:
-            continue
-        own = rows[shapely.distance(line_shapes_of(scene.inner_m[rows]), run) < arcs.SAGITTA_M]
-        alike = (c for c in curves if np.hypot(*(c.centre_m - fitted.centre_m)) <= _SAME_M)
-        known = next(alike, None)
-        if known is None:
-            curves.append(_TrueCurve(fitted.centre_m, own, fitted.radii_m))
-            continue
-        curves.remove(known)
-        faces = np.union1d(known.faces, own)
-        radii_m = np.append(known.radii_m, fitted.radii_m)
-        curves.append(_TrueCurve(known.centre_m, faces, radii_m))
-    return curves
+        alike = [of for of in found if np.hypot(*(of.centre_m - curve.centre_m)) <= _SAME_M]
+        found = [of for of in found if of not in alike]
+        parts = [*alike, curve]
+        faces = np.concatenate([of.faces for of in parts])
+        radii_m = np.concatenate([of.radii_m for of in parts])
+        found.append(_TrueCurve(parts[0].centre_m, faces, radii_m))
+    return found
 
 
-def _guess_centre(corners_m: FloatArray) -> FloatArray:
-    """Return the centre of the circle through corners, by linear least squares."""
-    middle_m = corners_m.mean(axis=0)
-    off_m = corners_m - middle_m
-    square = np.sum(off_m**2, axis=1)
-    known = np.column_stack([2 * off_m, np.ones(len(off_m))])
-    return middle_m + np.linalg.lstsq(known, square, rcond=None)[0][:2]
+def _fit_curve(faces_m: FloatArray, rows: IntArray) -> _TrueCurve | None:
+    """Return the curve of faces: where the lines square to them, in their middles, meet.
+
+    Jambs, whose lines go another way, are left out.
+    """
+    middle_m = faces_m[rows].mean(axis=1)
+    way = unit_directions(faces_m[rows])
+    kept = np.ones(len(rows), bool)
+    centre_m = np.zeros(2)
+    for _ in range(_ROUNDS):
+        if kept.sum() < _LEAST_FACES:
+            return None
+        along_m = np.sum(way * middle_m, axis=1)
+        centre_m = np.linalg.lstsq(way[kept], along_m[kept], rcond=None)[0]
+        off_m = np.abs(np.sum(way * (middle_m - centre_m), axis=1))
+        kept = off_m <= max(_SAME_M, float(np.median(off_m)))
+    radii_m = np.hypot(*(middle_m - centre_m).T)
+    return _TrueCurve(centre_m, rows[kept], radii_m[kept])
