@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import trace_arc
 from scanplan.plan.curves.bent_footprints import WallShapes
 from scanplan.plan.plan_wall import Nearly
 from scanplan.plan.tolerances import END_M
@@ -44,6 +45,14 @@ def centrelines_m(columns: Columns) -> FloatArray:
     """Return the lines (n, 2, 2) float64 of a table with the columns x0_m, y0_m, x1_m, y1_m."""
     ends = np.column_stack([columns[name] for name in _ENDS])
     return ends.astype(float).reshape(-1, 2, 2)
+
+
+def draw_axis(row: Mapping[str, Any]) -> shapely.LineString:
+    """Return the line of a row with such columns: of a curved wall its arc, in short chords."""
+    ends_m = np.array([row[name] for name in _ENDS], float).reshape(2, 2)
+    if not np.isfinite(row.get("arc_radius_m", np.nan)):
+        return shapely.LineString(ends_m)
+    return shapely.LineString(trace_arc(ends_m, np.array([row["arc_x_m"], row["arc_y_m"]])))
 
 
 def shape_walls(walls: Columns, left_m: FloatArray, right_m: FloatArray) -> WallShapes:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.floorplan import FloorPlan, draw_axis
 from scanplan.plan.floorplan_files import UNRATED
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 from scanplan.validation import doubt_words
@@ -223,9 +223,10 @@ def _find_place_m(kind: str, columns: Columns, row: int, about: str) -> FloatArr
     """Return where (2,) an element is, or the end of it that is doubtful."""
     if kind == "room":
         return np.array([columns["x_m"][row], columns["y_m"][row]])
-    ends_m = centrelines_m({name: values[row : row + 1] for name, values in columns.items()})[0]
+    axis = draw_axis({name: values[row] for name, values in columns.items()})
+    ends_m = shapely.get_coordinates(axis)[[0, -1]]
     if about != END:
-        return ends_m.mean(axis=0)
+        return shapely.get_coordinates(axis.interpolate(0.5, normalized=True))[0]
     return ends_m[int(columns["sigma_end1_m"][row] > columns["sigma_end0_m"][row])]
 
 
@@ -250,5 +251,4 @@ def _measure_m(kind: str, columns: Columns, row: int) -> float:
     """Return how long an element is, or how wide; NaN of a room."""
     if kind == "room":
         return np.nan
-    ends_m = centrelines_m({name: values[row : row + 1] for name, values in columns.items()})[0]
-    return float(np.hypot(*(ends_m[1] - ends_m[0])))
+    return draw_axis({name: values[row] for name, values in columns.items()}).length

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from scanplan.geometry import arcs, overlays
+from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
@@ -19,7 +19,7 @@ ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 
 def find_nearest(rows: Sequence[Row], place: shapely.Point) -> Row | None:
     """Return the row with the line nearest to a place, None where none is within reach."""
-    far_m = [shapely.distance(_axis(row), place) for row in rows]
+    far_m = [shapely.distance(floorplan.draw_axis(row), place) for row in rows]
     nearest = int(np.argmin(far_m)) if far_m else -1
     return rows[nearest] if far_m and far_m[nearest] <= REACH_M else None
 
@@ -130,7 +130,7 @@ def _frame(wall: Row, line_m: FloatArray) -> tuple[FloatArray, FloatArray, float
 
     A curved one is laid straight along its tangent beside the middle of another line (2, 2).
     """
-    axis = _axis(wall)
+    axis = floorplan.draw_axis(wall)
     corners_m = shapely.get_coordinates(axis)
     reach_m = axis.project(shapely.Point(line_m.mean(axis=0)))
     steps_m = np.cumsum(np.hypot(*np.diff(corners_m, axis=0).T))
@@ -154,15 +154,6 @@ def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
 def _line(row: Row) -> shapely.LineString:
     x0_m, y0_m, x1_m, y1_m = (row[name] for name in ENDS)
     return shapely.LineString([(x0_m, y0_m), (x1_m, y1_m)])
-
-
-def _axis(row: Row) -> shapely.LineString:
-    """Return a row's line, of a curved wall its arc."""
-    line = _line(row)
-    if not np.isfinite(row.get("arc_radius_m", np.nan)):
-        return line
-    centre_m = np.array([row["arc_x_m"], row["arc_y_m"]])
-    return shapely.LineString(arcs.trace_arc(shapely.get_coordinates(line), centre_m))
 
 
 def _ends(line_m: FloatArray) -> Row:
