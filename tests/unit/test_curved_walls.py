@@ -11,12 +11,13 @@ from hypothesis import strategies as st
 from helpers.arc_making import arc_faces, face, polygon_faces, samples, single_walls
 from helpers.ray_making import rays
 from scanplan.geometry.lines import Line
-from scanplan.plan import wall_faces, wall_ground
+from scanplan.plan import plan_tables, uncertainty, wall_faces, wall_ground
 from scanplan.plan.curves import circle_search, curved_walls
 from scanplan.plan.openings import OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.rays.face_observation import RaySettings
+from scanplan.store import schemas
 
 THICKNESS_M = (0.05, 0.6)
 LIMITS = {
@@ -174,3 +175,19 @@ def test_a_whole_ring_is_parted_into_walls_below_half_a_circle():
     strips = shapely.union_all(wall_ground.wall_strips(walls, 0.2))
     (ring,) = shapely.get_parts(strips.buffer(0.001))
     assert shapely.Polygon(ring.interiors[0]).area == pytest.approx(np.pi * 4.0**2, rel=0.005)
+
+
+def test_the_tables_state_the_circle_of_a_curved_wall_alone():
+    rng = np.random.default_rng(1)
+    straight = single_walls(polygon_faces(np.array([[9.0, 0.0], [9.0, 4.0]]), (6.0, 2.0), rng))
+    walls = bend([*straight, *single_walls(arc_faces(4.0, 0.2, 1.8, 5, rng))])
+    scans = uncertainty.place_scans(np.zeros((4, 2)), None, 0.02)
+    evidence = uncertainty.estimate_evidence(walls, [np.nan] * 2, scans)
+    columns = plan_tables.wall_columns(walls, evidence, {}, [False] * 2, 0.0)
+    assert np.isnan([columns[name][0] for name in schemas.ARC]).all()
+    x_m, y_m, radius_m, sigma_m = (columns[name][1] for name in schemas.ARC)
+    assert [x_m, y_m, radius_m] == pytest.approx([0.0, 0.0, 4.0], abs=0.01)
+    # no less than what poses may be off by
+    assert 0.02 <= sigma_m < 0.03
+    ends_m = [[columns[f"{axis}{end}_m"][1] for axis in "xy"] for end in (0, 1)]
+    assert np.hypot(*np.transpose(ends_m)) == pytest.approx(radius_m, abs=0.01)

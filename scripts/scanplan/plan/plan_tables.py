@@ -103,7 +103,7 @@ def wall_columns(
             "wall": number,
             **_end_columns(wall.ends),
             "thickness_m": wall.thickness_m,
-            **_bend_columns(wall.bend),
+            **_bend_columns(wall.bend, known.sigma_offset_m),
             "face_left": main_rows.get((number, True), -1),
             "face_right": main_rows.get((number, False), -1),
             "state": "observed" if known.observed >= 1 - known.observed else "inferred",
@@ -174,10 +174,12 @@ def opening_columns(
     )
 
 
-def _bend_columns(bend: Bend | None) -> Row:
+def _bend_columns(bend: Bend | None, sigma_offset_m: float) -> Row:
+    """Return a curved wall's circle: its radius errs by its fit, and by what its line is off by."""
     if bend is None:
         return dict.fromkeys(schemas.ARC, math.nan)
-    known = (*bend.centre_m.tolist(), bend.radius_m, bend.sigma_m)
+    sigma_m = math.hypot(bend.sigma_m, sigma_offset_m)
+    known = (*bend.centre_m.tolist(), bend.radius_m, sigma_m)
     return dict(zip(schemas.ARC, known, strict=True))
 
 

@@ -42,7 +42,7 @@ class Nearly:
 
 @dataclass(frozen=True, eq=False)
 class Bend:
-    """The circle that the line of a curved wall lies on: radius, and its standard deviation."""
+    """The circle that the line of a curved wall lies on; what its radius errs by, by its fit."""
 
     centre_m: FloatArray
     radius_m: float

@@ -15,10 +15,10 @@ from scanplan.types import FloatArray, IntArray
 
 _NEAR_M = 0.20  # of a surface, as the farthest that walls are looked for
 _SAME_M = 0.05  # of centres of one circle: vertices of truths are given to 0.1 mm
-_BESIDE_M = 0.3  # around the sides of one wall: half of what one is thick at most
+_BESIDE_M = 1.5  # around faces of one curve: half of what an opening in it is wide at most
 _LEAST_SEEN_M = 1.0  # of a curve: less shows no circle
 _LEAST_FACES = 3  # of a curve: the lines of two always meet
-_ROUNDS = 5  # of centres without jambs, of which a ring has few: two settle it
+_ROUNDS = 5  # of centres without jambs: two settle it
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,18 +109,26 @@ def _find_true_curves(scene: Scene) -> list[_TrueCurve]:
 def _fit_curve(faces_m: FloatArray, rows: IntArray) -> _TrueCurve | None:
     """Return the curve of faces: where the lines square to them, in their middles, meet.
 
-    Jambs, whose lines go another way, are left out.
+    Jambs and reveals, which point at the centre, are left out.
     """
     middle_m = faces_m[rows].mean(axis=1)
     way = unit_directions(faces_m[rows])
-    kept = np.ones(len(rows), bool)
-    centre_m = np.zeros(2)
+    centre_m = _guess_centre(middle_m)
+    is_chord = np.ones(len(rows), bool)
     for _ in range(_ROUNDS):
-        if kept.sum() < _LEAST_FACES:
+        outward_m = middle_m - centre_m
+        is_chord = 2 * np.abs(np.sum(way * outward_m, axis=1)) < np.hypot(*outward_m.T)
+        if is_chord.sum() < _LEAST_FACES:
             return None
         along_m = np.sum(way * middle_m, axis=1)
-        centre_m = np.linalg.lstsq(way[kept], along_m[kept], rcond=None)[0]
-        off_m = np.abs(np.sum(way * (middle_m - centre_m), axis=1))
-        kept = off_m <= max(_SAME_M, float(np.median(off_m)))
+        centre_m = np.linalg.lstsq(way[is_chord], along_m[is_chord], rcond=None)[0]
     radii_m = np.hypot(*(middle_m - centre_m).T)
-    return _TrueCurve(centre_m, rows[kept], radii_m[kept])
+    return _TrueCurve(centre_m, rows[is_chord], radii_m[is_chord])
+
+
+def _guess_centre(places_m: FloatArray) -> FloatArray:
+    """Return the centre (2,) of the circle through places (n, 2), by linear least squares."""
+    middle_m = places_m.mean(axis=0)
+    off_m = places_m - middle_m
+    known = np.column_stack([2 * off_m, np.ones(len(off_m))])
+    return middle_m + np.linalg.lstsq(known, np.sum(off_m**2, axis=1), rcond=None)[0][:2]
