@@ -58,12 +58,13 @@ def bend_walls(
     taken = np.zeros(len(walls), bool)
     bent: list[tuple[PlanWall, float]] = []
     for curve in curves:
-        ring = Ring(curve, [samples[row] for row in curve.rows])
+        ring = Ring(curve, [samples[row].face for row in curve.rows], curve.side)
         is_chord = ring.find_chords(walls) & ~taken
         taken |= is_chord
         chords = list(itertools.compress(walls, is_chord))
         top_m = _usual_top_m(chords, list(itertools.compress(tops_m, is_chord)))
-        bent += [(wall, top_m) for wall in ring.draw_walls(chords, rays, opening, reading)]
+        drawn = ring.add_faces(chords).draw_walls(chords, rays, opening, reading)
+        bent += [(wall, top_m) for wall in drawn]
     straight = [(w, t) for w, t, is_bent in zip(walls, tops_m, taken, strict=True) if not is_bent]
     met = _meet([wall for wall, _ in straight], [wall for wall, _ in bent])
     return met, [top_m for _, top_m in [*straight, *bent]]

@@ -12,14 +12,13 @@ from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.curves import arc_faces
 from scanplan.plan.curves.circle_search import INNER, OUTER, Curve
-from scanplan.plan.curves.face_samples import FaceSamples
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.openings import CLOSED, OPEN, UNKNOWN, Opening, OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import Bend, PlanWall
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_observation import RaySettings, observe_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MOST_TURN_RAD = math.radians(150)  # of one wall: a place on its chord is one on its arc below 180
 _LEAST_P = 1e-6  # that a part is a wall, or is none: densities are not known better
@@ -28,10 +27,24 @@ _ROUNDING_RAD = 1e-6  # before where a ring begins
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """The circles of a curve unrolled: places around it, in radians from where it begins."""
+    """The circles of a curve unrolled: places around it, in radians from where it begins.
+
+    Attributes
+    ----------
+    curve : circle_search.Curve
+    faces : list of intervals.FaceInterval
+        That lie on it.
+    side : (n,) int64
+        Which of its circles each is on.
+    """
 
     curve: Curve
-    samples: list[FaceSamples]
+    faces: list[FaceInterval]
+    side: IntArray
+
+    @property
+    def _ends_m(self) -> FloatArray:
+        return np.array([face.ends for face in self.faces])
 
     @property
     def _centre_m(self) -> FloatArray:
@@ -46,7 +59,7 @@ class Ring:
     @property
     def _begin_rad(self) -> float:
         """Where the widest gap ends that no face is in."""
-        begin, end = self._turned(np.array([of.face.ends for of in self.samples]), 0.0)
+        begin, end = self._turned(self._ends_m, 0.0)
         order = np.argsort(begin, kind="stable")
         reach = np.maximum.accumulate(end[order])
         gap = np.append(begin[order][1:], begin[order][0] + 2 * np.pi) - reach
@@ -65,19 +78,33 @@ class Ring:
 
         What lies between its sides all along, as they err, is a chord as well, or a jamb.
         """
-        shown_m = np.zeros(len(walls))
-        for sample in self.samples:
-            shown_m[sample.wall] += sample.face.length_m
-        whole_m = np.array([sum(face.length_m for face in wall.members) for wall in walls])
+        known = {id(face) for face in self.faces}
+        lengths_m = [[(id(f) in known, f.length_m) for f in wall.members] for wall in walls]
+        shown_m = np.array([sum(m for is_own, m in of if is_own) for of in lengths_m])
+        whole_m = np.array([sum(m for _, m in of) for of in lengths_m])
         low_m, high_m = self._radii_m
         ends_m = np.array([wall.ends for wall in walls]).reshape(-1, 2, 2)
         places_m = ends_m[:, :1] + np.linspace(0, 1, 5)[:, None] * np.diff(ends_m, axis=1)
         radius_m = np.hypot(*np.moveaxis(places_m - self._centre_m, 2, 0))
         is_between = ((radius_m >= low_m - END_M) & (radius_m <= high_m + END_M)).all(axis=1)
         first = self._begin_rad
-        _, end = self._turned(np.array([of.face.ends for of in self.samples]), first)
+        _, end = self._turned(self._ends_m, first)
         is_along = self._turned(ends_m, first)[1] <= end.max() + END_M / low_m
         return (2 * shown_m >= np.maximum(whole_m, END_M)) | (is_between & is_along)
+
+    def add_faces(self, chords: Sequence[PlanWall]) -> "Ring":
+        """Return it with all faces of its chords that lie on its circles, however short."""
+        known = {id(face) for face in self.faces}
+        rest = [face for wall in chords for face in wall.members if id(face) not in known]
+        ends_m = np.array([face.ends for face in rest]).reshape(-1, 2, 2) - self._centre_m
+        normals = np.array([face.line.normal for face in rest]).reshape(-1, 2)
+        away = np.sum(ends_m.mean(axis=1) * normals, axis=1)
+        side = np.where(away > 0, OUTER, INNER)
+        radius_m = np.array([self.curve.radius_m(of) for of in (INNER, OUTER)])[side]
+        off_m = np.abs(np.hypot(*np.moveaxis(ends_m, 2, 0)) - radius_m[:, None]).max(axis=1)
+        is_on = off_m <= END_M  # none where its side was not seen
+        faces = [*self.faces, *itertools.compress(rest, is_on)]
+        return replace(self, faces=faces, side=np.concatenate([self.side, side[is_on]]))
 
     def draw_walls(
         self,
@@ -91,9 +118,7 @@ class Ring:
         What rays go through between its faces is a way, as in a straight wall, or a window.
         """
         first = self._begin_rad
-        spans = np.column_stack(
-            self._turned(np.array([of.face.ends for of in self.samples]), first)
-        )
+        spans = np.column_stack(self._turned(self._ends_m, first))
         ways = self._choose_openings(chords, spans, first, opening.min_opening_m)
         known = np.concatenate([spans, np.array([of[0] for of in ways]).reshape(-1, 2)])
         closed: list[tuple[FloatArray, Opening]] = []
@@ -209,12 +234,10 @@ class Ring:
         """Return the faces of one side from one direction to another."""
         if side not in self.curve.side:
             return []
-        own = itertools.compress(self.samples, self.curve.side == side)
+        own = list(itertools.compress(self.faces, self.side == side))
         at_m = self.curve.radius_m(side) * np.column_stack([np.cos(span), np.sin(span)])
         arc_m = arcs.trace_arc(self._centre_m + at_m, self._centre_m)
-        return arc_faces.cut_faces(
-            [of.face for of in own], arc_m, self._centre_m, faces_centre=side == INNER
-        )
+        return arc_faces.cut_faces(own, arc_m, self._centre_m, faces_centre=side == INNER)
 
 
 def _chord(

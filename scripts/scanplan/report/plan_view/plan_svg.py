@@ -87,9 +87,13 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Draw what is clicked on, and what a row of a table points at."""
     rows = doubts.find_doubtful_faces(plan)
     faces = {name: values[rows] for name, values in plan.faces.items()}
+    lines_m = {
+        "wall": [shapely.get_coordinates(axis) for axis in plan.axes],
+        "face": floorplan.centrelines_m(faces),
+        "opening": floorplan.centrelines_m(plan.openings),
+    }
     for kind, columns in (("wall", plan.walls), ("face", faces), ("opening", plan.openings)):
-        lines_m = floorplan.centrelines_m(columns)
-        for number, line_m in zip(columns[kind].tolist(), lines_m, strict=True):
+        for number, line_m in zip(columns[kind].tolist(), lines_m[kind], strict=True):
             yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"')
 
 
