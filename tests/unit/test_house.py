@@ -53,7 +53,7 @@ HOMES = {
     "jinja2": ("report/", "thesis/"),
     "matplotlib": ("exports/", "report/", "stage/figure_files.py", "thesis/"),
     "snakemake": (),
-    "pandas": ("lab/", "report/overview.py", "thesis/"),
+    "pandas": ("lab/", "thesis/"),
     "sklearn": ("selection/hulls.py",),
 }
 """Library to the files and folders of the package that may import it."""

@@ -1,11 +1,10 @@
 """One table of many datasets: what was found of each, how doubtful it is, and which failed."""
 
 import math
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any
-
-import pandas as pd
 
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.report.templates import render_template
@@ -14,14 +13,12 @@ from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
 from scanplan.validation.doubts import list_to_verify
 
+Row = dict[str, Any]
+
 MADE, FAILED, MISSING = "plan", "failed", "no plan"
 """What became of a dataset: it has a plan, a stage of it failed, it was not got to."""
 
-_TEXTS = ("name", "state", "why")
-_NUMBERS = (
-    *("area_m2", "rooms", "open_rooms", "walls", "verify", "doors", "windows", "passages"),
-    *("chosen", "registered", "candidates", "predicted", "seconds"),
-)
+_NUMBERS = tuple(name for name, kind in schemas.OVERVIEW.columns.items() if kind == "float64")
 _DRAWN = ("faces", "walls", "openings", "rooms", "free")
 _CHECKED = ("confidence", "validation")
 
@@ -31,7 +28,7 @@ def gather_overview(
     faults: Mapping[str, Sequence[str]],
     run_times: Mapping[str, Sequence[FilePath]],
     corrected: Collection[str] = (),
-) -> pd.DataFrame:
+) -> list[Row]:
     """Gather a row for each dataset from its results.
 
     Parameters
@@ -47,14 +44,12 @@ def gather_overview(
 
     Returns
     -------
-    pandas.DataFrame
-        Columns `name`, `state`, `why`, `area_m2`, `rooms`, `walls`, `doors`, `windows`, `passages`,
-        `verify` (elements to verify on site, as the report lists them), `open_rooms`, `chosen`,
-        `registered`, `candidates` (scans), `predicted` (share of rays of left-out scans), `seconds`
-        (of all stages); NaN where unknown.
+    list of dict
+        By name, the columns of `schemas.OVERVIEW`: NaN where unknown.
     """
-    rows = [
+    return [
         {
+            **dict.fromkeys(_NUMBERS, math.nan),
             "name": name,
             "why": "; ".join(told),
             "seconds": math.fsum(c.seconds for c in read_job_costs(run_times[name]).values()),
@@ -62,15 +57,12 @@ def gather_overview(
                 Path(results, name), told, "plan/corrected" if name in corrected else "plan"
             ),
         }
-        for name, told in faults.items()
+        for name, told in sorted(faults.items())
     ]
-    overview = pd.DataFrame(rows, columns=[*_TEXTS, *_NUMBERS])
-    overview = overview.astype(dict.fromkeys(_NUMBERS, float))
-    return overview.sort_values("name", ignore_index=True)
 
 
-def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> dict[str, Any]:
-    row: dict[str, Any] = {}
+def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> Row:
+    row: Row = {}
     if (folder / "registration.parquet").exists():
         kept = tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)["kept"]
         row |= {"registered": int(kept.sum()), "candidates": len(kept)}
@@ -87,7 +79,7 @@ def _describe_results(folder: Path, faults: Sequence[str], plan: str) -> dict[st
     return row
 
 
-def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
+def _describe_plan(files: Mapping[str, Path]) -> Row:
     plan = floorplan_files.read_floorplan(files)
     validation = tables.read_table(files["validation"], schemas.VALIDATION, allow_empty=True)
     kinds = plan.openings["type"]
@@ -103,30 +95,32 @@ def _describe_plan(files: Mapping[str, Path]) -> dict[str, Any]:
 
 
 def write_overview(
-    overview: pd.DataFrame, results: FilePath, page_sources: Mapping[str, str]
+    overview: Sequence[Row], results: FilePath, page_sources: Mapping[str, str]
 ) -> tuple[Path, Path]:
     """Write summary.parquet and summary.html beside the datasets' folders, and return both.
 
     Parameters
     ----------
-    overview : pandas.DataFrame
+    overview : sequence of dict
         See `gather_overview`.
     page_sources : dict of str to str
         The template `overview.html.j2` and what it takes in, see `templates.render_template`.
     """
     table, page = (Path(results, f"summary.{suffix}") for suffix in ("parquet", "html"))
-    with atomic.replace_file(table) as temporary:
-        overview.to_parquet(temporary, index=False)
-    # what failed among hundreds is looked for first
-    is_made = overview["state"] == MADE
-    shown = pd.concat([overview[~is_made], overview[is_made]]).astype(object)
+    columns = {column: [row[column] for row in overview] for column in schemas.OVERVIEW.columns}
+    tables.write_table(table, schemas.OVERVIEW, columns)
     text = render_template(
         page_sources,
         "overview.html.j2",
-        rows=shown.where(shown.notna(), None).to_dict("records"),
-        totals=overview[list(_NUMBERS)].sum().to_dict(),
-        states=overview["state"].value_counts().to_dict(),
+        # what failed among hundreds is looked for first
+        rows=[_blank_unknown(row) for row in sorted(overview, key=lambda r: r["state"] == MADE)],
+        totals={n: math.fsum(row[n] for row in overview if row[n] == row[n]) for n in _NUMBERS},
+        states=dict(Counter(row["state"] for row in overview).most_common()),
         made=MADE,
     )
     atomic.write_text(page, text)
     return table, page
+
+
+def _blank_unknown(row: Row) -> Row:
+    return {name: None if value != value else value for name, value in row.items()}

@@ -588,3 +588,22 @@ PLAN_EVALUATION = Schema(
 The agreement and what begins with `n_walls` is of its faces; `plan_walls` are its paired and single
 walls.
 """
+OVERVIEW = Schema(
+    "overview",
+    1,
+    {
+        **dict.fromkeys(("name", "state", "why"), "string"),
+        **dict.fromkeys(("area_m2", "rooms", "open_rooms", "walls", "verify"), "float64"),
+        **dict.fromkeys(("doors", "windows", "passages"), "float64"),
+        **dict.fromkeys(("chosen", "registered", "candidates"), "float64"),
+        **dict.fromkeys(("predicted", "seconds"), "float64"),
+    },
+    ("name",),
+    outlives=True,
+)
+"""What became of each of many datasets; NaN where unknown.
+
+`state` is one of `report/overview.py`, `why` what its stages ended with; `verify` counts elements
+to verify on site, as the report lists them; `chosen`, `registered` and `candidates` are scans,
+`predicted` is the share of rays of left-out scans, and `seconds` are of all stages.
+"""
