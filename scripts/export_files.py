@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 
 import scanplan
-from scanplan.exports import ifc
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.model_origin import ModelOrigin, Site
@@ -66,7 +65,7 @@ def export_files(
         site=_find_site(drawn, settings["site"]),
     )
     writers: dict[str, Callable[[], str | bytes]] = {
-        "ifc": lambda: ifc.format_ifc(drawn, ids, origin),
+        "ifc": lambda: _format_ifc(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
@@ -87,6 +86,13 @@ def export_files(
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)
             geopackage.write_geopackage(temporary, layers, t_ns)
+
+
+def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
+    # its library is 200 MB, and not installed by all who want the other files
+    from scanplan.exports import ifc
+
+    return ifc.format_ifc(plan, ids, origin)
 
 
 def _find_site(plan: FloorPlan, stated: Settings) -> Site:

@@ -15,6 +15,24 @@ MOST_NAMED = 8
 """Things in one line: nobody reads a longer one."""
 
 
+EXTRAS = {
+    "ifcopenshell": "ifc",
+    "pye57": "e57",
+    "defusedxml": "e57",
+    "open3d": "simulate",
+    "trimesh": "simulate",
+    "sklearn": "thesis",
+    "pandas": "thesis",
+    "kiss_icp": "kiss-icp",
+}
+"""Libraries that no plan of bags needs, and the extra of the wheel that each comes with."""
+
+
+def name_extra(library: str) -> str:
+    """Return what to do where a library of `EXTRAS` is not installed."""
+    return f"{library} is not installed: pip install 'scanplan[{EXTRAS[library]}]'"
+
+
 def show_controls(text: str) -> str:
     """Return a text of visible characters alone: others, which may steer a terminal, as escapes."""
     if text.isprintable():

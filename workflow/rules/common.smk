@@ -143,6 +143,12 @@ GIVEN = or_end(given_datasets)
 # two or more datasets in a folder with building.yaml are storeys of one building
 NAMED = name_datasets(RUN["dataset"])
 BUILDING = or_end(building_file.find_building, NAMED)
+# a building's model is put together of theirs
+NO_MODEL = [
+    storey.dataset
+    for storey in (BUILDING.storeys if BUILDING else ())
+    if "ifc" not in GIVEN[storey.dataset].settings["plan"]["export"]["formats"]
+]
 SURVEYS = or_end(further_surveys) if LABORATORY else {}
 # a job's own process finds the note that its run has made
 if workflow.is_main_process and not IS_MODULE:
@@ -152,6 +158,11 @@ if workflow.is_main_process and not IS_MODULE:
         tell(f"scanplan: {note}")
     for note in BUILDING.note_unaligned() if BUILDING else []:
         tell(f"scanplan: {note}")
+    for note in export_formats.tell_lacking():
+        tell(f"scanplan: {note}")
+    if NO_MODEL:
+        lacking = f"plan.export.formats of {', '.join(NO_MODEL)} lacks ifc"
+        tell(f"scanplan: {BUILDING.name}: not made, as {lacking}")
     or_end(
         check_sources,
         {name: found.source for name, found in GIVEN.items()},
@@ -497,7 +508,7 @@ def results_of_building(wildcards):
         for storey in storeys
         for file in ("plan.ifc", "confidence.parquet")
     ]
-    return files if kept(made_of) == made_of else []
+    return files if not NO_MODEL and kept(made_of) == made_of else []
 
 
 def of_storeys(file):

@@ -6,6 +6,9 @@ No heavy imports: this runs while the workflow is being parsed.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib.util import find_spec
+
+from scanplan.errors import name_extra
 
 FILES = {
     "ifc": {"ifc": "plan/plan.ifc"},
@@ -18,6 +21,24 @@ FILES = {
 """What the stage `export_files` writes of each format, by what it is."""
 CLOUD = ("laz", "cloud.laz")
 """The format and the file of the stage `export_cloud`."""
+
+
+LIBRARIES = {"ifc": "ifcopenshell"}
+"""What some formats are written by that not every installation has."""
+
+
+def list_lacking() -> list[str]:
+    """Return the formats whose library is not installed."""
+    return [name for name, library in LIBRARIES.items() if find_spec(library) is None]
+
+
+def tell_lacking() -> list[str]:
+    """Return a line for each format that is left out as its library is not installed."""
+    return [
+        f"{', '.join(list_exports([name]))}: is not written unless asked for, as"
+        f" {name_extra(LIBRARIES[name])}"
+        for name in list_lacking()
+    ]
 
 
 def list_files(formats: Iterable[str]) -> dict[str, str]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
+from scanplan.project import export_formats
 from scanplan.project.settings_check import (
     COMMAND_LINE,
     MANUAL,
@@ -63,6 +64,8 @@ def merge_settings(base: Settings, over: Settings) -> dict[str, Any]:
 def read_defaults(path: FilePath, schema: Schema) -> dict[str, Any]:
     """Return the schema's defaults with the values of config/config.yaml laid over them, checked.
 
+    Formats whose library is not installed are left out: whoever wants them asks for them.
+
     Raises
     ------
     StageError
@@ -70,7 +73,10 @@ def read_defaults(path: FilePath, schema: Schema) -> dict[str, Any]:
     """
     settings = merge_settings(default_settings(schema), read_yaml(path))
     check_settings(settings, schema, _DEFAULTS)
-    return settings
+    usual = settings["plan"]["export"]["formats"]
+    lacking = export_formats.list_lacking()
+    of_plan = {"formats": [name for name in usual if name not in lacking]}
+    return merge_settings(settings, {"plan": {"export": of_plan}})
 
 
 def settings_of_dataset(

@@ -13,7 +13,14 @@ from pathlib import Path
 from typing import TextIO, TypeVar
 
 from scanplan import interrupts, surroundings
-from scanplan.errors import MORE_MEMORY, StageError, lacks_memory, show_controls
+from scanplan.errors import (
+    EXTRAS,
+    MORE_MEMORY,
+    StageError,
+    lacks_memory,
+    name_extra,
+    show_controls,
+)
 from scanplan.geometry import fallbacks
 from scanplan.plain_types import FilePath
 from scanplan.stage import blas_memory, bytecode, orphans, overtime, prompt_end
@@ -168,6 +175,9 @@ def _explain(error: Exception) -> str:
     reason = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
     if lacks_memory(error):
         return f"not enough memory ({reason}): {MORE_MEMORY}"
+    library = (error.name or "").partition(".")[0] if isinstance(error, ImportError) else ""
+    if library in EXTRAS and isinstance(error, ModuleNotFoundError):
+        return name_extra(library)
     if isinstance(error, (EOFError, ValueError)) and "marshal" in reason:
         bytecode.remove_cut_files()
         return bytecode.CUT_SHORT

@@ -221,7 +221,8 @@ def _start_odometry(missing: str) -> "KissICP":
     except ImportError as error:
         raise StageError(
             f"{missing}; KISS-ICP estimates them from 3-D clouds, and cannot be read ({error}): run"
-            " `make kiss-icp`, or record the poses of a localiser or odometry"
+            " `make kiss-icp` (of a wheel: pip install 'scanplan[kiss-icp]'), or record the poses"
+            " of a localiser or odometry"
         ) from error
     config = KISSConfig()
     # nearer returns are the rover's own body
