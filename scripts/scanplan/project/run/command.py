@@ -1,0 +1,159 @@
+"""The command `scanplan` of an installed release: a short way to a run of Snakemake's own."""
+
+import argparse
+import json
+import os
+import shlex
+import subprocess
+import sys
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn
+
+from scanplan import interrupts, surroundings
+from scanplan.errors import StageError
+from scanplan.plain_types import FilePath
+from scanplan.project.code_files import state_version
+
+SNAKEFILE = Path(__file__).absolute().parents[4] / "workflow/Snakefile"
+"""The workflow that lies beside this package, in a checkout and in a wheel alike."""
+DEMO = "demo"
+OPEN = "open"
+
+_WRONG_CALL = 2  # the exit status of shells' own commands where their arguments are wrong
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Do what a command says, and return the exit status; a run takes this process's place.
+
+    Parameters
+    ----------
+    words : sequence of str, optional
+        What follows the command's name; those of this process if None.
+    """
+    surroundings.mend_surroundings()
+    interrupts.end_on_interrupt()
+    given = list(sys.argv[1:] if words is None else words)
+    try:
+        if given[:1] == [OPEN]:
+            open_report(_read_folder(given[1:]))
+            return 0
+        arguments = form_arguments(given)
+    except StageError as error:
+        print(f"scanplan: {error}", file=sys.stderr)
+        return _WRONG_CALL
+    print(f"scanplan: runs {_show(arguments)}", flush=True)
+    return _begin_snakemake(arguments)
+
+
+def form_arguments(words: Sequence[str]) -> list[str]:
+    """Return the arguments of Snakemake that a command stands for.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Recordings and options, as `scanplan --help` lists them.
+
+    Raises
+    ------
+    StageError
+        If the words are no such command; where they could be of Snakemake, with its command.
+    SystemExit
+        Once the help or the version is told.
+    """
+    asked, further = _make_parser().parse_known_args(words)
+    if not asked.recording:
+        raise StageError(f"no recording is given; name one, a folder of them, or `{DEMO}`")
+    datasets = [] if asked.recording == [DEMO] else asked.recording
+    if DEMO in datasets:
+        raise StageError(f"{DEMO}: is made alone; ./{DEMO} is a folder of that name")
+    settings = {"dataset": datasets, "replace": asked.replace or []}
+    config = [f"{k}={json.dumps(v, ensure_ascii=False)}" for k, v in settings.items() if v]
+    arguments = [
+        *("--snakefile", str(SNAKEFILE), "--cores", asked.cores, *further),
+        *(("--configfile", asked.configfile) if asked.configfile else ()),
+        *(("--config", *config) if config else ()),
+    ]
+    if further:
+        raise StageError(f"{further[0]}: no option of scanplan; Snakemake's: {_show(arguments)}")
+    return arguments
+
+
+def open_report(results: FilePath) -> None:
+    """Show the report of a folder of results in the browser.
+
+    Raises
+    ------
+    StageError
+        If there is no report, or no browser.
+    """
+    page = Path(results, "report.html")
+    if not page.is_file():
+        raise StageError(f"{page}: there is no such report; name a folder below results/")
+    if not webbrowser.open(page.resolve().as_uri()):
+        raise StageError(f"{page}: no browser could be started; open the file in one")
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that tells faults in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        raise StageError(f"{message}; see `{self.prog} --help`")
+
+
+def _make_parser() -> _Parser:
+    parser = _Parser(
+        prog="scanplan",
+        description="Makes floor plans of LiDAR recordings, in results/ of the folder it runs in.",
+        epilog="`scanplan open results/NAME` shows a report in the browser. A run says which"
+        " command of Snakemake it is; whatever else Snakemake can do is added to that one.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=state_version())
+    parser.add_argument(
+        "recording",
+        nargs="*",
+        help=f"a recording, a folder with those of one floor, or `{DEMO}`: a simulated drive",
+    )
+    parser.add_argument(
+        "--cores", type=_read_cores, default="2", metavar="N", help="`all` or a number (2)"
+    )
+    parser.add_argument("--configfile", metavar="FILE", help="settings, see config/settings.md")
+    parser.add_argument(
+        "--replace",
+        action="append",
+        metavar="NAME",
+        help="take the place of results/NAME, made of another recording",
+    )
+    return parser
+
+
+def _read_cores(word: str) -> str:
+    if word != "all" and not (word.isascii() and word.isdigit() and int(word)):
+        raise argparse.ArgumentTypeError(f"{word} is no number of cores; give 1 or more, or `all`")
+    return word
+
+
+def _read_folder(words: Sequence[str]) -> str:
+    parser = _Parser(prog=f"scanplan {OPEN}", description="Shows a report in the browser.")
+    parser.add_argument("results", help="a folder with results, such as results/demo")
+    return parser.parse_args(words).results
+
+
+def _show(arguments: Sequence[str]) -> str:
+    return shlex.join(["snakemake", *arguments])
+
+
+def _begin_snakemake(arguments: Sequence[str]) -> int:
+    """Run Snakemake as `make run` does: in this process's place, where the system knows that."""
+    interrupts.prepare_children()
+    folders = [str(Path(sys.executable).parent), os.environ.get("PATH", "")]
+    os.environ["PATH"] = os.pathsep.join(filter(None, folders))
+    # every stage is a process, which would compile the package anew
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    # -P: modules are not looked for among the user's files
+    command = [sys.executable, "-P", "-m", "snakemake", *arguments]
+    if os.name != "nt":
+        os.execv(sys.executable, command)
+    return subprocess.run(command, check=False).returncode

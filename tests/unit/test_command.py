@@ -1,0 +1,120 @@
+"""The command of an installed release, and the command of Snakemake that it stands for."""
+
+import os
+import subprocess
+import sys
+import webbrowser
+
+import pytest
+from snakemake.cli import get_argument_parser
+
+from scanplan.errors import StageError
+from scanplan.project.code_files import state_version
+from scanplan.project.run import command
+
+MAIN = "import sys; from scanplan.project.run.command import main; sys.exit(main())"
+
+
+def understood(*words):
+    """Return what Snakemake reads of the arguments that a command stands for."""
+    return get_argument_parser().parse_args(command.form_arguments(words))
+
+
+def call(folder, *words, **variables):
+    places = [str(command.SNAKEFILE.parents[1] / "scripts"), variables.pop("PYTHONPATH", "")]
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, places)), **variables}
+    return subprocess.run(
+        [sys.executable, "-c", MAIN, *words], cwd=folder, env=env, capture_output=True, text=True
+    )
+
+
+def test_a_recording_is_a_run_of_the_workflow_beside_the_package(project_root):
+    asked = understood("my.bag")
+    assert asked.snakefile == str(project_root / "workflow/Snakefile")
+    assert (asked.config, asked.cores) == (['dataset=["my.bag"]'], 2)
+    assert not asked.configfile and not asked.targets
+
+
+def test_the_demo_is_a_run_without_a_dataset():
+    assert command.form_arguments(["demo"]) == [
+        "--snakefile",
+        str(command.SNAKEFILE),
+        "--cores",
+        "2",
+    ]
+
+
+def test_options_are_those_of_snakemake():
+    asked = understood(
+        "Erdgeschoß 1/", "b", "--cores", "4", "--replace", "b", "--configfile", "c.yaml"
+    )
+    assert asked.config == ['dataset=["Erdgeschoß 1/", "b"]', 'replace=["b"]']
+    assert asked.cores == 4 and [file.name for file in asked.configfile] == ["c.yaml"]
+    assert understood("a", "--cores", "all").cores == os.cpu_count()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "no recording is given"),
+        (["a", "--cores", "0"], "--cores: 0 is no number"),
+        (["a", "--cores", "²"], "--cores: ² is no number"),
+        (["a", "--cores"], "--cores: expected one argument"),
+        (["demo", "a"], "./demo"),
+        (
+            ["a", "--dry-run"],
+            "--dry-run: no option of scanplan; Snakemake's: snakemake --snakefile",
+        ),
+    ],
+)
+def test_wrong_calls_are_refused_with_the_word_and_the_remedy(words, told):
+    with pytest.raises(StageError) as raised:
+        command.form_arguments(words)
+    assert told in str(raised.value)
+
+
+def test_what_snakemake_alone_can_do_is_told_as_its_command():
+    with pytest.raises(StageError) as raised:
+        command.form_arguments(["a b", "--dry-run", "--until", "x"])
+    words = str(raised.value).partition("snakemake ")[2]
+    assert words.endswith("--cores 2 --dry-run --until x --config 'dataset=[\"a b\"]'")
+
+
+@pytest.mark.parametrize("words", [["--cores", "many"], ["open"], ["open", "nowhere"]])
+def test_a_fault_is_one_line_and_a_status(tmp_path, words):
+    done = call(tmp_path, *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("scanplan: ") and done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_version_is_that_which_results_state(tmp_path):
+    assert call(tmp_path, "--version").stdout == f"{state_version()}\n"
+
+
+def test_a_run_takes_the_place_of_the_command_and_says_which_it_is(tmp_path, project_root):
+    stub = "import os, sys; print(os.getppid(), os.getcwd(), *sys.argv[1:]); sys.exit(7)"
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere/snakemake.py").write_text(stub)
+    # the folder of the user's files has no say in what is imported
+    (tmp_path / "snakemake.py").write_text("raise SystemExit('the wrong one')")
+    done = call(tmp_path, "my.bag", PYTHONPATH=str(tmp_path / "elsewhere"))
+    first, second = done.stdout.splitlines()
+    expected = command.form_arguments(["my.bag"])
+    assert done.returncode == 7 and first.startswith("scanplan: runs snakemake --snakefile ")
+    assert second == f"{os.getpid()} {tmp_path} {' '.join(expected)}"
+
+
+@pytest.mark.parametrize("opens", [True, False])
+def test_the_report_is_opened_or_named_where_no_browser_can(tmp_path, monkeypatch, opens):
+    seen = []
+    monkeypatch.setattr(webbrowser, "open", lambda page: seen.append(page) or opens)
+    page = tmp_path / "a floor/report.html"
+    page.parent.mkdir()
+    page.touch()
+    if opens:
+        command.open_report(page.parent)
+    else:
+        with pytest.raises(StageError, match=r"a floor/report\.html: no browser"):
+            command.open_report(page.parent)
+    assert seen == [page.as_uri()]
