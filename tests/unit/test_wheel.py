@@ -131,6 +131,17 @@ def test_all_that_is_imported_is_asked_for():
             assert beside[canonicalize_name(package)] == extra
 
 
+OF_UNIX = {"fcntl", "grp", "posix", "pty", "pwd", "resource", "syslog", "termios", "tty"}
+
+
+def test_nothing_is_imported_at_once_that_windows_lacks():
+    for path in SCRIPTS.rglob("*.py"):
+        for node in ast.parse(path.read_text("utf-8")).body:
+            names = [alias.name for alias in getattr(node, "names", [])]
+            module = getattr(node, "module", None)
+            assert not OF_UNIX & {*names, module}, path
+
+
 REFUSING = """
 import importlib.abc, sys
 class Refuse(importlib.abc.MetaPathFinder):

@@ -5,7 +5,6 @@ refuses them it asks again for ever, without a signal being heard.
 """
 
 import mmap
-import resource
 import sys
 
 import numpy as np
@@ -22,6 +21,11 @@ def take_work_space() -> None:
     MemoryError
         If there is no room for it.
     """
+    # it limits the memory of no process
+    if sys.platform == "win32":
+        return
+    import resource
+
     limits = [resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_DATA, resource.RLIMIT_AS)]
     if all(limit == resource.RLIM_INFINITY for limit in limits):
         return

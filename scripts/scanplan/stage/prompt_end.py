@@ -7,6 +7,7 @@ that holds that for long is left to the run, which kills what is still there.
 
 import os
 import signal
+import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -29,20 +30,21 @@ def end_promptly(tell: Callable[[], None]) -> Iterator[None]:
     tell : callable
         Called in another thread before the end, where the process has not ended by itself.
     """
-    arrived, wake = os.pipe()
-    os.set_blocking(wake, False)
-    before = signal.set_wakeup_fd(wake, warn_on_full_buffer=False)
+    # Windows takes no pipes for that
+    arrived, wake = socket.socketpair()
+    wake.setblocking(False)
+    before = signal.set_wakeup_fd(wake.fileno(), warn_on_full_buffer=False)
     threading.Thread(target=_await_signal, args=(arrived, tell), daemon=True).start()
     try:
         yield
     finally:
         signal.set_wakeup_fd(before)
-        os.close(wake)
+        wake.close()
 
 
-def _await_signal(arrived: int, tell: Callable[[], None]) -> None:
-    with os.fdopen(arrived, "rb", buffering=0) as signals:
-        while (number := signals.read(1)) and number not in _ENDING:
+def _await_signal(arrived: socket.socket, tell: Callable[[], None]) -> None:
+    with arrived:
+        while (number := arrived.recv(1)) and number not in _ENDING:
             pass
     if number:
         time.sleep(_GRACE_S)

@@ -5,9 +5,11 @@ Nobody else says so: a process that is killed cannot, and Snakemake knows that i
 
 import os
 import re
-import resource
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+import psutil
 
 _AT_BEGINNING = "SCANPLAN_MEMORY_KILLS"
 _CGROUPS = Path("/proc/self/cgroup")
@@ -50,5 +52,14 @@ def _list_counters() -> Iterator[Path]:
 
 
 def measure_peak_mb() -> int:
-    """Return the memory of the largest process that this one and its children have waited for."""
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss // 1024
+    """Return the memory of the largest process that this one and its children have waited for.
+
+    On Windows, which keeps that of no process that has ended, that of this one.
+    """
+    if sys.platform == "win32":
+        return psutil.Process().memory_info().peak_wset >> 20
+    import resource
+
+    # macOS counts bytes, others kilobytes
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit >> 20

@@ -4,7 +4,6 @@ Snakemake's own lock survives a killed run, and its message does not name the re
 with its process.
 """
 
-import fcntl
 import os
 import signal
 import threading
@@ -19,6 +18,7 @@ import psutil
 
 from scanplan import interrupts
 from scanplan.errors import StageError
+from scanplan.project.run.file_locks import HAVE_FOLDERS, lock_file
 from scanplan.project.run.memory_kills import note_memory_kills
 from scanplan.store import atomic
 
@@ -48,7 +48,7 @@ def lock_folder() -> TextIO:
     except OSError as error:
         raise atomic.describe_unwritable(LOCK_FILE, error) from None
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        lock_file(file.fileno())
     except BlockingIOError:
         file.close()
         raise StageError(
@@ -92,6 +92,8 @@ def lock_results(names: Iterable[str]) -> list[int]:
     for folder in (Path("results", name) for name in names):
         try:
             folder.mkdir(parents=True, exist_ok=True)
+            if not HAVE_FOLDERS:
+                continue
             held.append(os.open(folder, os.O_RDONLY))
         except OSError as error:
             raise atomic.describe_unwritable(folder, error) from None
@@ -101,7 +103,7 @@ def lock_results(names: Iterable[str]) -> list[int]:
             continue
         places.add((place.st_dev, place.st_ino))
         try:
-            fcntl.flock(held[-1], fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock_file(held[-1])
         except BlockingIOError:
             release_results(held)
             raise StageError(
