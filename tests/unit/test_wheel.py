@@ -2,6 +2,7 @@
 
 import ast
 import email
+import os
 import re
 import shutil
 import subprocess
@@ -9,9 +10,11 @@ import sys
 import tomllib
 import zipfile
 from importlib.metadata import packages_distributions
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -44,8 +47,8 @@ def list_sources():
     """Return what the workflow consists of, as in a checkout without anything that was made."""
     folders = ("config", "scripts", "workflow")
     found = [path for folder in folders for path in (ROOT / folder).rglob("*") if path.is_file()]
-    left_out = (".md", ".pyc", ".def", ".sif")
-    return {path.relative_to(ROOT).as_posix() for path in found if path.suffix not in left_out}
+    named = [path.relative_to(ROOT) for path in found if path.suffix not in (".md", ".pyc")]
+    return {path.as_posix() for path in named if path.parent.name != "envs"}
 
 
 @pytest.fixture(scope="session")
@@ -185,3 +188,22 @@ def test_formats_without_their_library_are_left_out_of_the_defaults_and_told(mon
     assert defaults["plan"]["export"]["formats"] == ["glb", "gpkg", "csv", "json", "tum"]
     (told,) = export_formats.tell_lacking()
     assert told.startswith("plan/plan.ifc: ") and "'scanplan[ifc]'" in told
+
+
+@pytest.mark.parametrize("profile", ["default", "slurm"])
+def test_a_checkout_runs_its_own_code_where_a_wheel_is_installed(tmp_path, profile):
+    (tmp_path / "scanplan").mkdir()
+    (tmp_path / "scanplan/__init__.py").write_text("raise SystemExit('the other one')")
+    stated = yaml.safe_load((ROOT / f"workflow/profiles/{profile}/config.yaml").read_text("utf-8"))
+    begin = "\n".join(
+        takewhile(lambda line: "from scanplan" not in line, stated["__definitions__"])
+    )
+    code = f"{begin}\nimport scanplan, os; print(os.path.abspath(scanplan.__file__))"
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout.strip() == str(SCRIPTS / "scanplan/__init__.py"), done.stderr
