@@ -68,3 +68,30 @@ def write_by_open3d(path, xyz_m, *, packed=False):
     cloud = open3d.t.geometry.PointCloud(np.ascontiguousarray(xyz_m, np.float64))
     open3d.t.io.write_point_cloud(str(path), cloud, compressed=packed)
     return path
+
+
+def write_table(path, rows, form):
+    """A PCD or PLY of a structured array, its fields as they are; text in full digits."""
+    ply = path.suffix == ".ply"
+    kinds = [rows.dtype[name] for name in rows.dtype.names]
+    if ply:
+        called = {"f4": "float", "f8": "double", "u4": "uint", "i4": "int", "u1": "uchar"}
+        fields = zip(kinds, rows.dtype.names, strict=True)
+        stated = [f"property {called[kind.str[1:]]} {name}" for kind, name in fields]
+        head = ["ply", f"format {form} 1.0", f"element vertex {len(rows)}", *stated, "end_header"]
+    else:
+        head = [
+            f"VERSION 0.7\nFIELDS {' '.join(rows.dtype.names)}",
+            f"SIZE {' '.join(str(kind.itemsize) for kind in kinds)}",
+            f"TYPE {' '.join(kind.kind.upper() for kind in kinds)}",
+            f"COUNT {' '.join('1' for _ in kinds)}\nWIDTH {len(rows)}\nHEIGHT 1",
+            f"VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {len(rows)}\nDATA {form}",
+        ]
+    if form == "ascii":
+        data = "".join(" ".join(map(repr, row)) + "\n" for row in rows.tolist()).encode()
+    else:
+        order = ">" if form == "binary_big_endian" else "<"
+        data = rows.astype(rows.dtype.newbyteorder(order)).tobytes()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes("\n".join([*head, ""]).encode() + data)
+    return path

@@ -170,7 +170,7 @@ TABLES["text.pcd"] = write_text_pcd
 @pytest.mark.parametrize("name", TABLES)
 @pytest.mark.parametrize("block", [7, 2**18])
 def test_tables_of_every_form_are_read_block_by_block(tmp_path, monkeypatch, name, block):
-    monkeypatch.setattr("scanplan.recordings.merged.table_points._BLOCK", block)
+    monkeypatch.setattr("scanplan.recordings.table_points._BLOCK", block)
     TABLES[name](tmp_path / name, ROOM[:40])
     (source,) = point_files.list_sources([tmp_path / name])
     np.testing.assert_allclose(np.concatenate(list(source())), ROOM[:40], atol=1e-6)

@@ -218,7 +218,7 @@ def test_poses_may_begin_with_a_mark_of_their_coding(tmp_path):
 def test_a_cloud_that_unpacks_to_too_much_is_refused_before_it_is_read(
     tmp_path, monkeypatch, n_points, unpacked, said
 ):
-    monkeypatch.setattr(scan_folder, "_read_fields", None)
+    monkeypatch.setattr(scan_folder, "_read_by_open3d", None)
     files = folder(tmp_path, ["1700000000.5.pcd"], TWO)
     write_compressed_pcd(tmp_path / "scans/1700000000.5.pcd", n_points, unpacked, bytes(1000))
     with open_survey(files, **LIMITS) as survey, pytest.raises(StageError, match=said):

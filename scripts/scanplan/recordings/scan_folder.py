@@ -11,7 +11,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.recordings import clocks, frame_edges, registered_clouds
+from scanplan.recordings import clocks, frame_edges, registered_clouds, table_points
 from scanplan.recordings.integrity.pcd_size import check_pcd_size
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
@@ -142,30 +142,23 @@ def read_cloud_file(path: Path, unit_m: float = 1.0) -> tuple[FloatArray, Array 
         If it is damaged, or takes more memory than is allowed.
     """
     n_stated = (check_ply_size if path.suffix.lower() == ".ply" else check_pcd_size)(path)
-    fields = _read_fields(path)
-    xyz_m = fields.get("positions", np.empty((0, 3)))
+    table = table_points.describe_table(path)
+    xyz_m, times = _read_by_open3d(path) if table is None else table_points.read_whole(table)
     if n_stated != len(xyz_m):
-        raise say_cut_short(path, n_stated, len(xyz_m))
-    times = [fields[name].reshape(-1) for name in TIME_FIELDS if name in fields]
+        raise table_points.say_cut_short(path, n_stated, len(xyz_m))
     with np.errstate(over="ignore"):
-        return unit_m * xyz_m.astype(np.float32), times[0] if times else None
+        return unit_m * xyz_m.astype(np.float32), times
 
 
-def say_cut_short(path: Path, n_stated: int, n_there: int) -> StageError:
-    """Return the refusal of a file that states more points, or fewer, than it holds."""
-    return StageError(
-        f"{path}: damaged: states {n_stated} points, {n_there} can be read; write it again"
-    )
-
-
-def _read_fields(path: Path) -> dict[str, Array]:
-    """Return the positions and the times, where there are any, that Open3D reads."""
+def _read_by_open3d(path: Path) -> tuple[FloatArray, Array | None]:
+    """Return points (n, 3) and times (n,), where there are any, of what is no table."""
     import open3d
 
     try:
         cloud = open3d.t.io.read_point_cloud(path)
-        names = [name for name in ("positions", *TIME_FIELDS) if name in cloud.point]
-        return {name: cloud.point[name].numpy() for name in names}
+        fields = {name: cloud.point[name].numpy() for name in cloud.point}
     except Exception as error:
         reason = " ".join(str(error).split())[:100]
         raise StageError(f"{path}: damaged ({reason}); write it again") from error
+    times = [fields[name].reshape(-1) for name in TIME_FIELDS if name in fields]
+    return fields.get("positions", np.empty((0, 3))), times[0] if times else None

@@ -4,8 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-from scanplan.recordings import las_points
-from scanplan.recordings.merged import table_points
+import numpy as np
+
+from scanplan.errors import StageError
+from scanplan.recordings import las_points, scan_folder, table_points
 from scanplan.types import FloatArray
 
 
@@ -25,8 +27,19 @@ def _read_las(path: Path) -> Iterator[FloatArray]:
         yield block.read().xyz_m
 
 
+def _read_table(path: Path) -> Iterator[FloatArray]:
+    table = table_points.describe_table(path)
+    if table is not None:
+        return table_points.read_blocks(table)
+    if path.suffix.lower() == ".ply":
+        raise StageError(
+            f"{path}: its header is not that of a cloud of points: these stand first, with x, y, z"
+            " and no lists; write it again"
+        )
+    return iter([scan_folder.read_cloud_file(path)[0].astype(np.float64)])
+
+
 _READERS: dict[str, Callable[[Path], Iterator[FloatArray]]] = {
     **dict.fromkeys((".las", ".laz"), _read_las),
-    ".ply": table_points.read_ply_blocks,
-    ".pcd": table_points.read_pcd_blocks,
+    **dict.fromkeys((".ply", ".pcd"), _read_table),
 }
