@@ -28,6 +28,11 @@ def test_storeys_make_a_building_where_all_are_given(project_root, tmp_path):
     assert "assemble_building" not in project.would_run(*given("floor_0"))
     told = project.run("--dry-run", *given("floor_0", "floor_1"))
     assert "Town_hall: floor_1 not aligned with the storeys below" in told.stderr
+    without = (*given("floor_0", "floor_1"), "plan={export: {formats: [csv]}}")
+    assert "assemble_building" not in project.would_run(*without)
+    assert "Town_hall: not made, as plan.export.formats of floor_0, floor_1 lacks ifc" in (
+        project.run("--dry-run", *without).stderr
+    )
     refused = project.run("--dry-run", *given("floor_0", "floor_2"))
     assert refused.returncode != 0 and "Traceback" not in refused.stderr
     assert "storey floor_1 has no scans: its dataset floor_1 is not given" in refused.stderr

@@ -136,7 +136,7 @@ def _open_recordings(
     topics_and_frame: Mapping[str, Any],
     common: Mapping[str, Any],
 ) -> Survey:
-    # rosbags costs a second to import, Open3D another: only the one that is needed
+    # rosbags costs a second to import: where it is needed alone
     if dataset_files.is_scan_folder(files):
         from scanplan.recordings import scan_folder
 
