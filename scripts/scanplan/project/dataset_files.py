@@ -137,7 +137,7 @@ def find_files(path: FilePath) -> list[str]:
     if not path.exists():
         raise StageError(
             f"{path}: does not exist; give a dataset folder or a recording with"
-            " `make run DATASET=PATH` or `--config dataset=PATH`"
+            " `make run DATASET=PATH`, `scanplan PATH` or `--config dataset=PATH`"
         )
     try:
         kinds = [[path]] if path.is_file() else _list_kinds(path)

@@ -64,7 +64,7 @@ def check_sources(sources: Mapping[str, str], replaced: str | Sequence[str] = ()
             raise StageError(
                 f"results/{name}: was made of {old[0]}, not of {new}; rename {new}, move"
                 f" results/{name} away, or have it replaced by `--config replace={name}`"
-                f" (make run: REPLACE={name})"
+                f" (make run: REPLACE={name}; scanplan: --replace {name})"
             )
 
 
