@@ -1,11 +1,12 @@
 """The plan as GeoJSON, in the local metres of the survey."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Columns
@@ -47,13 +48,6 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
         Their properties are the columns of the
         tables, null where not known.
     """
-    collection = {
-        "type": "FeatureCollection",
-        "name": plan.name,
-        "crs": {"type": "name", "properties": {"name": CRS}},
-        "note": NOTE,
-        "units": "m",
-    }
     walls = list(_line_features("wall", plan.walls))
     for row in np.flatnonzero(plan.wall_shapes.is_bent).tolist():
         corners_m = shapely.get_coordinates(plan.axes[row]).tolist()
@@ -68,9 +62,39 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
         *_polygon_features("room", plan.rooms),
         *_polygon_features("furniture", plan.furniture),
     ]
+    return format_collection(plan.name, features)
+
+
+def format_collection(name: str, features: Iterable[Feature], **stated: object) -> str:
+    """Return features as the text of a FeatureCollection, one a line.
+
+    Parameters
+    ----------
+    **stated
+        Further members of the collection.
+    """
+    collection = {
+        "type": "FeatureCollection",
+        "name": name,
+        "crs": {"type": "name", "properties": {"name": CRS}},
+        "note": NOTE,
+        "units": "m",
+        **stated,
+    }
     head = json.dumps(collection, ensure_ascii=False)
     lines = ",\n".join(json.dumps(feature, allow_nan=False) for feature in features)
     return f'{head[:-1]}, "features": [\n{lines}\n]}}\n'
+
+
+def make_feature(identity: str, shape: BaseGeometry, properties: Mapping[str, Any]) -> Feature:
+    """Return a feature of a shape rounded to a tenth of a millimetre, and of values of a table."""
+    rounded = shapely.transform(shape, lambda xy_m: np.round(xy_m, _DIGITS) + 0.0)
+    return {
+        "type": "Feature",
+        "id": identity,
+        "properties": {name: round_value(value) for name, value in properties.items()},
+        "geometry": json.loads(shapely.to_geojson(rounded)),
+    }
 
 
 def _line_features(kind: str, columns: Columns) -> Iterator[Feature]:

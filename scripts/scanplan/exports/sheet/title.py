@@ -25,6 +25,8 @@ from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
+Value = tuple[str, str, int]
+"""Of a title block: its head, what it says, and how many of three columns it is wide."""
 _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
@@ -85,9 +87,6 @@ def draw_frame(page: Page) -> Iterator[Mark]:
 
 def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator[Mark | Word]:
     """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
-    _, y0, x1, _ = page.inner_mm
-    x0 = x1 - 3 * Paper.COLUMN
-    y1 = y0 + TITLE_ROWS * Paper.ROW
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
     n_doubts = len(list_to_verify(plan))
@@ -116,6 +115,14 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         ],
         [("Verdict", _state_verdict(plan), 3)],
     ]
+    yield from draw_block(page, rows)
+
+
+def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | Word]:
+    """Yield a title block of rows of values, each with its head, over so many columns of three."""
+    _, y0, x1, _ = page.inner_mm
+    x0 = x1 - 3 * Paper.COLUMN
+    y1 = y0 + TITLE_ROWS * Paper.ROW
     # the last row, on the frame's thick line, is the highest
     levels = [*np.arange(len(rows)) * -_HEIGHT_MM + y1, y0]
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
