@@ -491,6 +491,40 @@ STANDPOINTS = Schema(
 of one that sees all around; `way_m` how long the way to it is (`geometry`) from the one before, and
 to the first from where the survey began; `n_questions` how many it shows most of.
 """
+CHANGES = Schema(
+    "changes",
+    1,
+    {
+        "change": "int32",
+        "element": "string",
+        **dict.fromkeys(("number_a", "number_b"), "int32"),
+        "verdict": "string",
+        "p": "float64",
+        "likely": "bool",
+        **dict.fromkeys(("kind_a", "kind_b"), "string"),
+        **dict.fromkeys(
+            ("shift_m", "sigma_m", "x_moved_m", "y_moved_m", "length_m", "area_m2"), "float64"
+        ),
+        "doubt": "string",
+        "geometry": "binary",
+    },
+    ("change",),
+    geometry=True,
+)
+"""What became of the elements of an earlier survey, a, in a later one, b; all in the frame of a.
+
+`element` is wall (a stretch of one), opening, room or furniture; `number_a` and `number_b` are its
+numbers in the tables of either plan, -1 where it is in none. `verdict` is same, moved, gone, new or
+not_seen, `p` how likely that is (NaN of what was not seen), `likely` whether it is a change that
+counts as one; `doubt` says what else it may be. What is gone stood where rays of b go through, what
+is new where rays of a did. `shift_m` is how far b lies from a, `sigma_m` its standard deviation:
+of a wall across, to the left of its line in a, of an opening the edge that differs most, along it,
+of furniture the way of its middle. A room has moved where walls that bound it have.
+
+Of both surveys the file states the names `a` and `b`; `motion`, from the frame of b to that of a
+(yaw_rad, x_m, y_m), its `covariance` of x, y and yaw about `centre_m`, `residual_m` of the faces
+that agree and `share` of the smaller survey's; and `others`, motions that fit nearly as well. JSON.
+"""
 _WITHIN = ("005m", "010m", "015m")
 _SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {

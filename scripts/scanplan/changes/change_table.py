@@ -1,0 +1,116 @@
+"""What became of the elements of two surveys as a table, with how their frames were tied."""
+
+import json
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from scanplan.changes.comparison import Comparison
+from scanplan.changes.frames import FrameTie
+from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, Change
+from scanplan.plan.floorplan import say_count
+from scanplan.types import Array
+
+_TABLES = ("wall", "opening", "room", "furniture")
+_DIGITS = 6  # of what notes state: a thousandth of a millimetre
+
+
+def tabulate_changes(changes: Sequence[Change]) -> dict[str, Array]:
+    """Return the columns of `schemas.CHANGES`."""
+    shapes = np.array([c.shape for c in changes], object)
+    moved_m = np.array([c.moved_m for c in changes], float).reshape(-1, 2)
+    is_line = shapely.get_dimensions(shapes) == 1 if len(shapes) else np.empty(0, bool)
+    length_m, area_m2 = (measure(shapes) for measure in (shapely.length, shapely.area))
+    return {
+        "change": np.arange(len(changes), dtype=np.int32),
+        "element": np.array([c.table for c in changes], object),
+        "number_a": np.array([c.number_a for c in changes], np.int32),
+        "number_b": np.array([c.number_b for c in changes], np.int32),
+        "verdict": np.array([c.verdict for c in changes], object),
+        "p": np.array([c.p for c in changes], float),
+        "likely": np.array([c.is_change for c in changes], bool),
+        "kind_a": np.array([c.kind_a for c in changes], object),
+        "kind_b": np.array([c.kind_b for c in changes], object),
+        "shift_m": np.array([c.shift_m for c in changes], float),
+        "sigma_m": np.array([c.sigma_m for c in changes], float),
+        "x_moved_m": moved_m[:, 0].copy(),
+        "y_moved_m": moved_m[:, 1].copy(),
+        "length_m": np.where(is_line, length_m, np.nan),
+        "area_m2": np.where(is_line, np.nan, area_m2),
+        "doubt": np.array([c.doubt for c in changes], object),
+        "geometry": shapely.to_wkb(shapes, byte_order=1).astype(object),
+    }
+
+
+def state_tie(compared: Comparison) -> dict[str, str]:
+    """Return the notes of `schemas.CHANGES`."""
+    fit = compared.tie.fit
+    stated = {
+        "a": compared.a.plan.name,
+        "b": compared.b.plan.name,
+        "motion": _list_motion(fit.motion),
+        "centre_m": _round(fit.centre_m),
+        "covariance": fit.covariance.tolist(),
+        "residual_m": round(fit.residual_m, _DIGITS),
+        "share": round(compared.tie.share, _DIGITS),
+        "others": [[*_list_motion(of), round(share, 3)] for of, share in compared.tie.others],
+    }
+    return {name: json.dumps(value) for name, value in stated.items()}
+
+
+def _list_motion(motion: PlaneMotion) -> list[float]:
+    return _round(np.array([motion.yaw_rad, motion.x_m, motion.y_m]))
+
+
+def _round(values: Array) -> list[float]:
+    return (np.round(values, _DIGITS) + 0.0).tolist()
+
+
+def summarise_changes(changes: Sequence[Change]) -> list[str]:
+    """Return in a line for each kind of element what became of it.
+
+    Walls are counted by their length, the others by number.
+    """
+    return [line for table in _TABLES if (line := _summarise(table, changes))]
+
+
+def _summarise(table: str, changes: Sequence[Change]) -> str:
+    of_table = [c for c in changes if c.table == table]
+    parts = []
+    for verdict in (*CHANGES, SAME, NOT_SEEN):
+        found = [c for c in of_table if c.verdict == verdict]
+        sure = [c for c in found if c.is_change or verdict not in CHANGES]
+        if sure:
+            length = f" ({sum(c.shape.length for c in sure):.1f} m)" if table == "wall" else ""
+            parts.append(f"{len(sure)} {verdict.replace('_', ' ')}{length}")
+        if doubtful := len(found) - len(sure):
+            parts.append(f"{doubtful} maybe {verdict}")
+    return f"{table}: {', '.join(parts)}" if parts else ""
+
+
+def summarise_tie(tie: FrameTie) -> str:
+    """Return in words how the frames of two surveys were tied."""
+    fit = tie.fit
+    sigma_m = math.sqrt(float(np.diag(fit.covariance)[:2].max()))
+    sigma_deg = math.degrees(math.sqrt(float(fit.covariance[2, 2])))
+    return (
+        f"turned by {math.degrees(fit.motion.yaw_rad):+.2f} ± {sigma_deg:.2f}°, shifted by"
+        f" {fit.motion.x_m:+.3f}, {fit.motion.y_m:+.3f} ± {sigma_m:.3f} m; {tie.share:.0%} of the"
+        f" walls agree within {fit.residual_m:.3f} m"
+    )
+
+
+def warn_of_others(tie: FrameTie) -> str:
+    """Return in words which other motions fit nearly as well; nothing where none does."""
+    if not tie.others:
+        return ""
+    turns = [
+        f"{math.degrees(motion.yaw_rad - tie.fit.motion.yaw_rad) % 360:.0f}° ({share:.0%} agree)"
+        for motion, share in tie.others
+    ]
+    ways = say_count(len(turns), "other way")
+    remedy = "hold the drawing against the floor, or survey what tells its sides apart"
+    return f"the floor looks alike in {ways}, turned by {', '.join(turns)}; {remedy}"

@@ -1,0 +1,200 @@
+"""Rooms and furniture of two surveys compared."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+import shapely.affinity
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.changes import ray_cells, verdicts
+from scanplan.changes.surveys import Survey
+from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME, Change
+from scanplan.geometry import overlays
+from scanplan.store.schemas import PIECE
+from scanplan.types import Array, FloatArray, IntArray
+
+_SEEN = 0.5  # of a room's floor: less shows nothing of it
+_ALIKE = 0.5  # intersection over union of two rooms that are one
+_TOUCH_M = (
+    0.5  # of a changed wall from the outline of a room: half of a thick one, and what ends err
+)
+_CHANGED = 0.02  # of a room's area, beside walls that have changed: more than its outline errs by
+_IN_PLACE = 0.3  # intersection over union of two outlines of one piece, each seen in part
+_PASSED = 0.5  # of the cells across a piece that rays go through where it stood
+_HIT = 0.3  # of those that rays end at
+_AS_LARGE = 0.6  # the smaller area of the larger: one piece, seen from other sides
+_CARRIED_M = 3.0  # farther away it may as well be another
+_MOVES = 0.3  # of furniture: chairs and desks are moved, cupboards are not
+
+
+def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Change]:
+    """Return what became of rooms: one that no changed wall bounds is the same.
+
+    Parameters
+    ----------
+    a, b : Survey
+        In one frame.
+    changes : sequence of Change
+        Those of walls count.
+    """
+    walls = [c for c in changes if c.is_change and c.table == "wall"]
+    moved = [shapely.affinity.translate(c.shape, *c.moved_m) for c in walls if c.verdict == MOVED]
+    built = overlays.unite_shapes([*(c.shape for c in walls), *moved])
+    areas_a, areas_b = (np.array([s.place(area) for area in s.plan.areas], object) for s in (a, b))
+    shared = _share_areas(areas_a, areas_b)
+    pairs = _pair_most(shared, _ALIKE)
+    numbers_a, numbers_b = a.plan.rooms["room"], b.plan.rooms["room"]
+    found = [
+        _judge_pair(int(numbers_a[i]), int(numbers_b[j]), areas_a[i], areas_b[j], built)
+        for i, j in pairs
+    ]
+    found += [
+        _judge_alone(int(numbers_a[i]), areas_a[i], b.free, built)
+        for i in range(len(areas_a))
+        if i not in {i for i, _ in pairs}
+    ]
+    new = [
+        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, built)
+        for j in range(len(areas_b))
+        if j not in {j for _, j in pairs}
+    ]
+    return [*found, *map(_turn_round, new)]
+
+
+def _judge_pair(
+    number_a: int, number_b: int, area: BaseGeometry, other: BaseGeometry, built: BaseGeometry
+) -> Change:
+    apart = overlays.unite_areas(
+        [overlays.subtract_areas(area, other), overlays.subtract_areas(other, area)]
+    )
+    near = overlays.intersect_areas(apart, overlays.buffer_shapes(built, _TOUCH_M))
+    is_changed = near.area > _CHANGED * area.area
+    return Change("room", number_a, number_b, MOVED if is_changed else SAME, verdicts.LIKELY, area)
+
+
+def _judge_alone(
+    number: int, area: BaseGeometry, seen: BaseGeometry, built: BaseGeometry
+) -> Change:
+    share = overlays.intersect_areas(area, seen).area / area.area
+    if share < _SEEN:
+        return Change("room", number, -1, NOT_SEEN, math.nan, area)
+    is_touched = not built.is_empty and shapely.dwithin(area, built, _TOUCH_M)
+    doubt = "" if is_touched else "parted otherwise, by no wall that has changed"
+    return Change(
+        "room", number, -1, GONE if is_touched else SAME, verdicts.LIKELY, area, doubt=doubt
+    )
+
+
+def compare_furniture(a: Survey, b: Survey) -> list[Change]:
+    """Return what became of pieces of furniture, those that were carried off and found again moved.
+
+    Parameters
+    ----------
+    a, b : Survey
+        In one frame.
+    """
+    shapes_a, numbers_a = _list_pieces(a)
+    shapes_b, numbers_b = _list_pieces(b)
+    pairs = _pair_most(_share_areas(shapes_a, shapes_b), _IN_PLACE)
+    found = [
+        Change(
+            "furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, verdicts.LIKELY, shapes_a[i]
+        )
+        for i, j in pairs
+    ]
+    lone_a = [i for i in range(len(shapes_a)) if i not in {i for i, _ in pairs}]
+    lone_b = [j for j in range(len(shapes_b)) if j not in {j for _, j in pairs}]
+    gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in lone_a]
+    new = [_turn_round(_judge_piece(int(numbers_b[j]), shapes_b[j], b, a)) for j in lone_b]
+    return [*found, *_join_moved(gone, new)]
+
+
+def _list_pieces(survey: Survey) -> tuple[Array, IntArray]:
+    pieces = survey.plan.furniture
+    rows = np.flatnonzero(pieces["kind"] == PIECE)
+    shapes = shapely.from_wkb(np.asarray(pieces["geometry"], object)[rows])
+    placed = np.empty(len(rows), object)
+    placed[:] = [survey.place(shape) for shape in shapes]
+    return placed, np.asarray(pieces["furniture"])[rows].astype(np.int64)
+
+
+def _judge_piece(number: int, shape: BaseGeometry, of: Survey, by: Survey) -> Change:
+    """Return what another survey shows of a piece, along the middle of its outline."""
+    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
+    if len(corners_m) < 4:
+        return Change("furniture", number, -1, NOT_SEEN, math.nan, shape)
+    edges_m = np.hypot(*np.diff(corners_m[:3], axis=0).T)
+    order = [0, 1, 2, 3] if edges_m[0] >= edges_m[1] else [1, 2, 3, 0]
+    first, second, third, fourth = corners_m[order]
+    ends_m = np.array([(first + fourth) / 2, (second + third) / 2])
+    line, length_m = ray_cells.line_between(ends_m)
+    looks = [ray_cells.look_at(s.rays, line, (0.0, length_m), edges_m.min() / 2) for s in (of, by)]
+    later = ray_cells.compare_looks(*looks)
+    n_passing, n_ending = later.count_places(np.ones(len(later.is_passed), bool))
+    p = verdicts.rate_places(n_passing, n_ending, _MOVES)
+    if np.mean(later.is_passed) >= _PASSED and p > 0.5:
+        return Change("furniture", number, -1, GONE, p, shape)
+    if np.mean(later.is_hit) >= _HIT:
+        return Change("furniture", number, -1, SAME, 1 - p, shape)
+    return Change("furniture", number, -1, NOT_SEEN, math.nan, shape)
+
+
+def _join_moved(gone: list[Change], new: list[Change]) -> list[Change]:
+    """Return changes of furniture, what is gone here and new nearby as one piece that moved."""
+    closeness = np.zeros((len(gone), len(new)))
+    for i, old in enumerate(gone):
+        for j, other in enumerate(new):
+            areas = sorted([old.shape.area, other.shape.area])
+            apart_m = old.shape.centroid.distance(other.shape.centroid)
+            is_one = old.verdict == GONE and other.verdict == NEW
+            if is_one and apart_m <= _CARRIED_M and areas[0] >= _AS_LARGE * areas[1]:
+                closeness[i, j] = 1 - apart_m / (2 * _CARRIED_M)
+    pairs = _pair_most(closeness, 0.0)
+    moved = []
+    for i, j in pairs:
+        way_m = shapely.get_coordinates([new[j].shape.centroid, gone[i].shape.centroid])
+        x_m, y_m = (way_m[0] - way_m[1]).tolist()
+        moved.append(
+            replace(
+                gone[i],
+                number_b=new[j].number_b,
+                verdict=MOVED,
+                p=gone[i].p * new[j].p,
+                moved_m=(x_m, y_m),
+                shift_m=math.hypot(x_m, y_m),
+            )
+        )
+    rest_a = [c for i, c in enumerate(gone) if i not in {i for i, _ in pairs}]
+    rest_b = [c for j, c in enumerate(new) if j not in {j for _, j in pairs}]
+    return [*moved, *rest_a, *rest_b]
+
+
+def _turn_round(change: Change) -> Change:
+    verdict = NEW if change.verdict == GONE else change.verdict
+    return replace(change, number_a=-1, number_b=change.number_a, verdict=verdict)
+
+
+def _share_areas(shapes: Array, others: Array) -> FloatArray:
+    """Return the intersection over union (n, m) of shapes."""
+    shared = np.zeros((len(shapes), len(others)))
+    if shared.size:
+        rows, columns = shapely.STRtree(others).query(shapes, predicate="intersects")
+        common = shapely.area(overlays.intersect_areas(shapes[rows], others[columns]))
+        of_both = shapely.area(shapes[rows]) + shapely.area(others[columns]) - common
+        shared[rows, columns] = common / of_both
+    return shared
+
+
+def _pair_most(shared: FloatArray, least: float) -> list[tuple[int, int]]:
+    """Return the pairs of rows and columns that share most, the most first, above a least."""
+    pairs: list[tuple[int, int]] = []
+    order = np.argsort(-shared, axis=None, kind="stable")
+    for i, j in zip(*np.unravel_index(order, shared.shape), strict=True):
+        if shared[i, j] <= least:
+            break
+        if all(i != row and j != column for row, column in pairs):
+            pairs.append((int(i), int(j)))
+    return sorted(pairs)

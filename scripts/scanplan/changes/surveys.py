@@ -1,0 +1,107 @@
+"""A survey as it is compared with another: its plan, its faces, and rays of its scans."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
+from scanplan.geometry import overlays
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.rays.ray_set import RaySet, gather_rays
+from scanplan.rays.tolerances import SKIRTING_M
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.store.tables import ScanStore
+from scanplan.types import FloatArray, IntArray
+
+_MOST_SCANS = 300  # evenly over the drive: every wall of a floor is seen by many of them
+_MOST_RAYS = 3_000_000  # of all of them: 100 MB, and a second to sort
+_OPEN_M = 0.1  # below the ceiling nothing is asked: of a lintel or a beam
+
+
+@dataclass(frozen=True, eq=False)
+class Survey:
+    """A survey.
+
+    Attributes
+    ----------
+    plan : floorplan.FloorPlan
+        In its own frame.
+    rays : ray_set.RaySet
+        In the frame that `motion` leads to, heights above the floor.
+    motion : PlaneMotion
+        From its own frame to the common one.
+    """
+
+    plan: FloorPlan
+    rays: RaySet
+    motion: PlaneMotion
+
+    @cached_property
+    def faces(self) -> SeenFaces:
+        """The faces that it shows, in the common frame."""
+        return list_seen_faces(self.plan).moved(self.motion)
+
+    @cached_property
+    def free(self) -> BaseGeometry:
+        """The floor that rays went over, in the common frame."""
+        return self.place(find_free_floor(self.plan))
+
+    def place(self, shape: BaseGeometry) -> BaseGeometry:
+        """Return a shape of the plan in the common frame."""
+        return shapely.transform(shape, lambda xy_m: np.asarray(self.motion.move(xy_m), np.float64))
+
+
+def find_free_floor(plan: FloorPlan) -> BaseGeometry:
+    """Return the floor that rays went over, in the plan's frame."""
+    return overlays.unite_areas(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+
+
+def read_rays(
+    store: ScanStore, registered: RegisteredScans, plan: FloorPlan, motion: PlaneMotion
+) -> RaySet:
+    """Return rays of scans all over a drive in another frame, heights above the plan's floor.
+
+    Those that end at the floor or the ceiling say nothing of walls and are left out. Of long
+    recordings scans are thinned evenly, and of dense scans rays by chance.
+
+    Parameters
+    ----------
+    motion : PlaneMotion
+        From the survey's frame.
+    """
+    scan_ids = _thin(registered.scan_ids, _MOST_SCANS)
+    rows = np.searchsorted(registered.scan_ids, scan_ids)
+    most = _MOST_RAYS // len(scan_ids)
+    floor_m, height_m = (0.0, np.inf) if store.planar else plan.storey_m
+    high_m = height_m - _OPEN_M if plan.height_from == "ceiling" else np.inf
+
+    def moved_m(xyz_m: FloatArray) -> FloatArray:
+        return np.column_stack([motion.move(xyz_m[:, :2]), xyz_m[:, 2] - floor_m])
+
+    def thinned() -> Iterator[tuple[int, FloatArray]]:
+        for scan_id, xyz_m in store.scans(scan_ids):
+            placed_m = moved_m(xyz_m.astype(float))
+            is_wanted = (placed_m[:, 2] > SKIRTING_M) & (placed_m[:, 2] < high_m)
+            placed_m = placed_m if store.planar else placed_m[is_wanted]
+            if len(placed_m) > most:
+                # by chance: every second of sixteen beams would be always the same ones
+                random = np.random.default_rng(scan_id)
+                placed_m = placed_m[random.choice(len(placed_m), most, replace=False)]
+            yield scan_id, placed_m
+
+    sensors_m = moved_m(registered.map_from_sensor[rows, :3, 3])
+    places_m = dict(zip(scan_ids.tolist(), sensors_m, strict=True))
+    rays = gather_rays(thinned(), places_m, planar=store.planar)
+    return replace(rays, floor_z_m=np.nan if store.planar else 0.0)
+
+
+def _thin(values: IntArray, most: int) -> IntArray:
+    """Return at most so many values, evenly chosen."""
+    if len(values) <= most:
+        return values
+    return values[np.unique(np.linspace(0, len(values) - 1, most).round().astype(np.int64))]

@@ -1,0 +1,107 @@
+"""What became of an element between two surveys, and how likely that is.
+
+Probabilities are those of two cases, by what rays and faces of both surveys show of each.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+from shapely.geometry.base import BaseGeometry
+
+SAME, MOVED, GONE, NEW, NOT_SEEN = "same", "moved", "gone", "new", "not_seen"
+VERDICTS = (SAME, MOVED, GONE, NEW, NOT_SEEN)
+"""What may have become of an element."""
+CHANGES = (MOVED, GONE, NEW)
+LIKELY = 0.9
+"""A change that is less likely is doubtful: to be verified on site."""
+_CHANGED = 0.05  # of the elements of a floor, before either survey is asked: few are rebuilt
+_PLACE_TELLS = 9.0  # a place tells what is right nine times as often as what is wrong
+_MOST_PLACES = 6  # more err alike, by one map
+REACH_M = 0.6
+"""A wall that has moved has done so by less, either way, all as likely."""
+_WRONG = 0.02  # of faces that have not moved: drawn of something else in one survey
+SIGMAS = 3.0
+"""Standard deviations that a shift is larger than where it is told."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What became of an element, or of a part of it.
+
+    Attributes
+    ----------
+    table : str
+        wall, opening, room or furniture.
+    number_a, number_b : int
+        Its number in either plan, -1 where it is in none.
+    verdict : str
+        Of `VERDICTS`.
+    p : float
+        How likely that is; NaN of what was not seen.
+    shape : shapely geometry
+        What it covers, in the frame of a.
+    kind_a, kind_b : str
+        Type of an opening or kind of furniture in either.
+    moved_m : (float, float)
+        Where to: x and y, in the frame of a; NaN where it has not.
+    shift_m, sigma_m : float
+        How far b lies from a, and what that errs by; NaN where not measured.
+    doubt : str
+        What else it may be.
+    """
+
+    table: str
+    number_a: int
+    number_b: int
+    verdict: str
+    p: float
+    shape: BaseGeometry = field(repr=False)
+    kind_a: str = ""
+    kind_b: str = ""
+    moved_m: tuple[float, float] = (math.nan, math.nan)
+    shift_m: float = math.nan
+    sigma_m: float = math.nan
+    doubt: str = ""
+
+    @property
+    def is_change(self) -> bool:
+        """Whether it is a change that is likely."""
+        return self.verdict in CHANGES and self.p >= LIKELY
+
+
+def rate_places(n_for: int, n_against: int, usual: float = _CHANGED) -> float:
+    """Return how likely a change is that rays of some places show, and of others deny.
+
+    Parameters
+    ----------
+    usual : float
+        Share of such elements that have changed, before any is looked at.
+
+    Examples
+    --------
+    >>> round(rate_places(3, 0), 2), round(rate_places(1, 0), 2), round(rate_places(3, 3), 2)
+    (0.97, 0.32, 0.05)
+    """
+    net = max(-_MOST_PLACES, min(_MOST_PLACES, n_for - n_against))
+    odds = usual / (1 - usual) * _PLACE_TELLS**net
+    return odds / (1 + odds)
+
+
+def rate_shift(shift_m: float, sigma_m: float, n_shown: int) -> float:
+    """Return how likely it is that a wall has moved that was measured to have.
+
+    Parameters
+    ----------
+    n_shown : int
+        How many show it, each for itself: faces on one side and the other, returns at both places.
+
+    Examples
+    --------
+    >>> rate_shift(0.1, 0.01, 2) > 0.9, rate_shift(0.01, 0.01, 1) < 0.05
+    (True, True)
+    """
+    density = math.exp(-0.5 * (shift_m / sigma_m) ** 2) / (sigma_m * math.sqrt(2 * math.pi))
+    wrong = _WRONG**n_shown
+    moved = _CHANGED / (2 * REACH_M)
+    same = (1 - _CHANGED) * ((1 - wrong) * density + wrong / (2 * REACH_M))
+    return moved / (moved + same)

@@ -1,0 +1,288 @@
+"""Walls of two surveys compared: stretch by stretch, by their faces first, then by rays."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from scanplan.changes import ray_cells, verdicts
+from scanplan.changes.face_shifts import FaceShifts
+from scanplan.changes.ray_cells import CELL_M, Later
+from scanplan.changes.surveys import Survey
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.geometry.lines import Line
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.types import BoolArray, FloatArray, IntArray
+
+_LEAST_M = 0.3  # of a stretch: a shorter one may be a jamb, or what ends err by
+_OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the other survey has it
+_MEETS_M = 0.3  # of a wall's end and another: as far as a plan draws them apart
+_LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what they err by
+
+_MATCHED, _IN_OPENING, _PASSED, _HIT, _UNKNOWN = range(5)
+"""What another survey shows of a cell of a wall."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Wall:
+    """A wall in the common frame, in cells along its line.
+
+    Attributes
+    ----------
+    number : int
+    line : Line
+        Its middle, or its one face, from its first end on.
+    half_m : float
+        Half of its thickness; 0 where that is not known.
+    n_cells : int
+    p_true : float
+        How likely it is a wall.
+    is_built_in : bool
+        Whether other walls meet both its ends, as of no cupboard.
+    """
+
+    number: int
+    line: Line
+    half_m: float
+    n_cells: int
+    p_true: float
+    is_built_in: bool
+
+    @property
+    def span_m(self) -> tuple[float, float]:
+        return 0.0, self.n_cells * CELL_M
+
+    @property
+    def middle_m(self) -> FloatArray:
+        return (np.arange(self.n_cells) + 0.5) * CELL_M
+
+
+@dataclass(frozen=True, eq=False)
+class _Shifts:
+    """What faces of the other survey show of the cells of a wall, (c,) each.
+
+    Attributes
+    ----------
+    shift_m : float64
+        How far it lies to the left, NaN where it has no face there.
+    sigma_m : float64
+    n_shown : int64
+        How many show it, see `verdicts.rate_shift`.
+    number : int64
+        Of its wall, -1 of none.
+    """
+
+    shift_m: FloatArray
+    sigma_m: FloatArray
+    n_shown: IntArray
+    number: IntArray
+
+    @property
+    def is_moved(self) -> BoolArray:
+        return np.abs(self.shift_m) > SIGMAS * self.sigma_m
+
+
+def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
+    """Return what became of the walls of a, and of those of b where a has none.
+
+    Parameters
+    ----------
+    a, b : Survey
+        In one frame.
+    shifts : FaceShifts
+        Of their faces, seen from those of a.
+    """
+    gone = list(_compare(a, b, shifts))
+    new = [_turn_round(change) for change in _compare(b, a, shifts.turned())]
+    # what faces of both show is told by the walls of a
+    return gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
+
+
+def _turn_round(change: Change) -> Change:
+    verdict = NEW if change.verdict == GONE else change.verdict
+    return replace(change, number_a=change.number_b, number_b=change.number_a, verdict=verdict)
+
+
+def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
+    """Yield what another survey shows of the walls of one."""
+    others = {wall.number: wall for wall in _list_walls(by)}
+    own_m, others_m = (s.motion.move(centrelines_m(s.plan.openings)) for s in (of, by))
+    for wall in _list_walls(of):
+        found = _find_shifts(wall, shifts)
+        earlier, later = (
+            ray_cells.look_at(s.rays, wall.line, wall.span_m, wall.half_m) for s in (of, by)
+        )
+        compared = ray_cells.compare_looks(earlier, later)
+        state = np.select(
+            [
+                np.isfinite(found.shift_m),
+                _cover(wall, others_m),
+                compared.is_passed,
+                compared.is_hit,
+            ],
+            [_MATCHED, _IN_OPENING, _PASSED, _HIT],
+            _UNKNOWN,
+        )
+        is_open = _cover(wall, own_m[of.plan.openings["wall"] == wall.number])
+        parts = list(_part(state, is_open, found.is_moved))
+        gone_m = sum(_length_m(cells) for kind, cells in parts if kind == _PASSED)
+        for kind, cells in parts:
+            # what is left beside a wall that is gone is no part of it that has moved
+            is_rest = found.is_moved[cells].any() and _length_m(cells) < gone_m
+            if kind == _MATCHED and not is_rest:
+                yield _judge_shift(wall, cells, found, others)
+            elif kind != _IN_OPENING:
+                yield _judge_rays(wall, kind, cells, compared)
+
+
+def _list_walls(survey: Survey) -> Iterator[_Wall]:
+    plan = survey.plan
+    left_m, right_m = plan.sides_m
+    rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
+    lines_m = survey.motion.move(centrelines_m(plan.walls))
+    for row, number in enumerate(plan.walls["wall"].tolist()):
+        line, length_m = ray_cells.line_between(lines_m[row])
+        is_thick = bool(plan.thick[row])
+        # of one seen from one side the line is that of its face
+        half_m = float(left_m[row] + right_m[row]) / 2 if is_thick else 0.0
+        n_cells = ray_cells.count_cells((0.0, length_m))
+        yield _Wall(number, line, half_m, n_cells, float(rated[row]), _is_built_in(plan, row))
+
+
+def _is_built_in(plan: FloorPlan, row: int) -> bool:
+    """Return whether a wall ends at other walls on both sides."""
+    ends = shapely.points(centrelines_m(plan.walls)[row])
+    others = np.delete(plan.bodies, row)
+    return all(shapely.dwithin(end, others, _MEETS_M).any() for end in ends)
+
+
+def _cover(wall: _Wall, openings_m: FloatArray) -> BoolArray:
+    """Return which cells (c,) of a wall openings (n, 2, 2) cover that lie along it."""
+    along_m = np.sort(wall.line.along_m(openings_m), axis=1)
+    off_m = np.abs(wall.line.offset_m(openings_m)).max(axis=1, initial=0.0)
+    along_m = along_m[off_m <= _OPENING_M + wall.half_m]
+    is_in = (along_m[:, :1] <= wall.middle_m) & (wall.middle_m <= along_m[:, 1:])
+    return np.any(is_in, axis=0)
+
+
+def _find_shifts(wall: _Wall, shifts: FaceShifts) -> _Shifts:
+    pairs = shifts.pairs
+    shift_m, sigma_m = np.full((2, 2, wall.n_cells), np.nan)
+    number = np.full(wall.n_cells, -1, np.int64)
+    n_returns = np.zeros(wall.n_cells, np.int64)
+    rows = np.flatnonzero(shifts.faces.wall[pairs.a] == wall.number)
+    # the longest last, so that it stands where several lie over one another
+    for row in rows[np.argsort(pairs.length_m[rows], kind="stable")].tolist():
+        face = int(pairs.a[row])
+        centre_m, along = shifts.faces.ends_m[face].mean(axis=0), shifts.faces.along[face]
+        ends_m = centre_m + np.array([[pairs.low_m[row]], [pairs.high_m[row]]]) * along
+        low_m, high_m = np.sort(wall.line.along_m(ends_m))
+        cells = (low_m <= wall.middle_m) & (wall.middle_m <= high_m)
+        is_left = float(shifts.faces.normal[face] @ wall.line.normal) > 0
+        side = 0 if is_left else 1
+        shift_m[side, cells] = pairs.shift_m[row] if is_left else -pairs.shift_m[row]
+        sigma_m[side, cells] = shifts.sigma_m[row]
+        n_returns[cells] = int(shifts.is_confirmed[row])
+        other = shifts.others.wall[pairs.b[row]]
+        number[cells] = np.where(other >= 0, other, number[cells])
+    known = np.isfinite(shift_m)
+    n_sides = known.sum(axis=0)
+    is_known = n_sides > 0
+    mean_m, of_mean_m = (
+        np.where(is_known, np.nansum(values, axis=0) / np.maximum(n_sides, 1), np.nan)
+        for values in (shift_m, sigma_m)
+    )
+    # of sides that have not moved alike one may be lined, or measured wrongly
+    apart = np.abs(shift_m[0] - shift_m[1]) > SIGMAS * of_mean_m + _LIKE_M
+    n_shown = np.where(apart, 1, n_sides) + n_returns
+    return _Shifts(mean_m, of_mean_m, n_shown, number)
+
+
+def _part(state: IntArray, is_open: BoolArray, is_moved: BoolArray) -> Iterator[tuple[int, slice]]:
+    """Yield the states and cells of stretches that are long enough, the own openings left out."""
+    key = np.where(is_open, -1, 2 * state + ((state == _MATCHED) & is_moved))
+    key = _join_short(key)
+    begins, ends = _runs(key)
+    for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
+        if key[begin] >= 0 and (end - begin) * CELL_M >= _LEAST_M - CELL_M / 2:
+            yield int(key[begin]) // 2, slice(begin, end)
+
+
+def _join_short(key: IntArray) -> IntArray:
+    """Return keys (c,) of cells, runs that are too short with the key of the longer run beside."""
+    key = key.copy()
+    for length in range(1, round(_LEAST_M / CELL_M)):
+        begins, ends = _runs(key)
+        sizes = ends - begins
+        for i in np.flatnonzero((sizes == length) & (key[begins] >= 0)).tolist():
+            beside = [j for j in (i - 1, i + 1) if 0 <= j < len(sizes) and key[begins[j]] >= 0]
+            if beside:
+                longer = max(beside, key=lambda j: sizes[j])
+                key[begins[i] : ends[i]] = key[begins[longer]]
+    return key
+
+
+def _runs(key: IntArray) -> tuple[IntArray, IntArray]:
+    begins = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
+    return begins, np.append(begins[1:], len(key))
+
+
+def _length_m(cells: slice) -> float:
+    return (cells.stop - cells.start) * CELL_M
+
+
+def _judge_shift(wall: _Wall, cells: slice, found: _Shifts, others: Mapping[int, _Wall]) -> Change:
+    known = np.flatnonzero(np.isfinite(found.shift_m[cells])) + cells.start
+    shift_m, sigma_m = (
+        float(np.median(values[known])) for values in (found.shift_m, found.sigma_m)
+    )
+    numbers = found.number[known]
+    numbers = numbers[numbers >= 0]
+    other = int(np.bincount(numbers).argmax()) if len(numbers) else -1
+    p = verdicts.rate_shift(shift_m, sigma_m, int(np.median(found.n_shown[known])))
+    same = Change(
+        "wall",
+        wall.number,
+        other,
+        SAME,
+        1 - p,
+        _shape(wall, cells),
+        shift_m=shift_m,
+        sigma_m=sigma_m,
+    )
+    if abs(shift_m) <= SIGMAS * sigma_m:
+        return same
+    x_m, y_m = (shift_m * wall.line.normal).tolist()
+    doubt = "" if p >= LIKELY else "shown by one face alone"
+    p *= _rate_both(wall, others.get(other))
+    return replace(same, verdict=MOVED, p=p, moved_m=(x_m, y_m), doubt=doubt)
+
+
+def _rate_both(wall: _Wall, other: _Wall | None) -> float:
+    """Return how likely it is that what two surveys show is a wall.
+
+    Of what stands free the one that doubts it is right: the other has seen less of it.
+    """
+    if other is None:
+        return wall.p_true
+    choose = max if wall.is_built_in and other.is_built_in else min
+    return choose(wall.p_true, other.p_true)
+
+
+def _judge_rays(wall: _Wall, kind: int, cells: slice, later: Later) -> Change:
+    is_of_it = np.zeros(wall.n_cells, bool)
+    is_of_it[cells] = True
+    n_passing, n_ending = later.count_places(is_of_it)
+    p = verdicts.rate_places(n_passing, n_ending)
+    shape = _shape(wall, cells)
+    if kind in (_PASSED, _MATCHED) and p > 0.5:
+        return Change("wall", wall.number, -1, GONE, p * wall.p_true, shape)
+    if kind == _HIT:
+        return Change("wall", wall.number, -1, SAME, 1 - p, shape)
+    return Change("wall", wall.number, -1, NOT_SEEN, math.nan, shape)
+
+
+def _shape(wall: _Wall, cells: slice) -> shapely.LineString:
+    return shapely.LineString(wall.line.at(np.array([cells.start, cells.stop]) * CELL_M))
