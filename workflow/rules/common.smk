@@ -36,11 +36,13 @@ from scanplan.errors import StageError
 from scanplan.project import building_file, export_formats, stage_settings
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
+    CHANGES,
     describe_dataset,
     find_truth,
     list_comparison,
     list_results,
     name_datasets,
+    pair_surveys,
     survey_files,
 )
 from scanplan.project.dataset_files import RESERVED

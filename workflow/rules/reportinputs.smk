@@ -81,3 +81,4 @@ def page_files(*names, folder="workflow/report/page"):
 REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js"),
 )
+CHANGES_PAGE = page_files("changes.html.j2", "changes.css", "page.css")

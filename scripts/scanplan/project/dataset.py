@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +56,8 @@ _COMPARED_WITH_TRUTH = (
 )
 COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH)
 """Results of a dataset that the comparison alone has stages for."""
+CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
+"""Suffixes of what is made of two surveys of a floor."""
 
 
 @dataclass(frozen=True)
@@ -294,6 +297,23 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     if found.truth:
         files += _COMPARED_WITH_TRUTH
     return [f"results/{found.name}/{file}" for file in files]
+
+
+def pair_surveys(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return each dataset but the first with the one that is given before it, the earlier first.
+
+    Raises
+    ------
+    StageError
+        If there are fewer than two.
+    """
+    if len(names) < 2:
+        example = """--config 'dataset=["first", "second"]'"""
+        raise StageError(
+            f"changes: needs two surveys of a floor, {len(names)} is given ({', '.join(names)});"
+            f" give the earlier one first: {example}"
+        )
+    return list(pairwise(names))
 
 
 def find_truth(found: Dataset) -> tuple[str, str]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 INK = "#000000"
 FAINT = "#595959"  # grey of what steps back behind the walls: dimensions, and what is inferred
-DOUBT = "#b3001b"  # the one colour of a sheet, for what is to be verified on site
+DOUBT = "#b3001b"  # the one colour of a plan's sheet, for what is to be verified on site
+ADDED, CARRIED = "#00704f", "#0b62a8"  # of what changed: new, and moved; what is gone has DOUBT's
 
 
 class Letters:
@@ -111,6 +112,11 @@ LAYERS = {
     "A-DOOR-VRFY": Layer(0.25, 1, "DASHED"),
     "A-GLAZ-VRFY": Layer(0.25, 1, "DASHED"),
     "A-AREA-IDEN": Layer(0.18, 7),
+    "A-CHNG-SAME": Layer(0.13, 9),
+    "A-CHNG-NSEN": Layer(0.18, 8, "DOTTED"),
+    "A-CHNG-GONE": Layer(0.35, 1, "DASHED"),
+    "A-CHNG-NEWW": Layer(0.35, 3),
+    "A-CHNG-MOVD": Layer(0.35, 5),
     "A-ANNO-VRFY": Layer(0.18, 1),
     "A-ANNO-REVS": Layer(0.25, 6, "DASHED"),
     "A-ANNO-DIMS": Layer(0.13, 8),
@@ -144,6 +150,13 @@ STYLES = {
     "window": Style("A-GLAZ", "window", fill="#ffffff"),
     "verify": Style("A-ANNO-VRFY", "doubtful (?): verify on site", DOUBT, dashes_mm=(1.2, 0.8)),
     "corrected": Style("A-ANNO-REVS", "corrected by hand *", dashes_mm=(2.5, 0.7, 0.5, 0.7)),
+    "unchanged": Style("A-CHNG-SAME", "as in both surveys", FAINT, "#d9d9d9"),
+    "stood": Style("A-CHNG-SAME", "furniture, as it stood", "#a0a0a0"),
+    "unlooked": Style("A-CHNG-NSEN", "not seen by the other survey", INK, "#ffffff", _DOTTED),
+    "gone": Style("A-CHNG-GONE", "gone: rays go through now", DOUBT, dashes_mm=_DASHED),
+    "new": Style("A-CHNG-NEWW", "new: rays went through before", ADDED, "#bfe3d3"),
+    "moved": Style("A-CHNG-MOVD", "moved: where it stands now", CARRIED, "#c4dbf0"),
+    "way": Style("A-CHNG-MOVD", ink=CARRIED, fill=CARRIED),
     "leader": Style("A-ANNO-DIMS", ink=FAINT),
     "dimension": Style("A-ANNO-DIMS", "~ about, an end is not known", ink=FAINT),
     "tick": Style("A-ANNO-TEXT"),
