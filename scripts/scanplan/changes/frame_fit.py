@@ -17,7 +17,7 @@ _LEAST_M = 0.3  # side by side: less tells no direction
 _ENOUGH_M = 2.0  # a longer face tells no more: what it errs by is that of its survey
 _LEAST_SCATTER_M = 0.005  # of one wall in two surveys: half of the noise of a range
 _HALF = 0.5  # of faces: as many may have moved, or be of other things
-_MOST = 0.8  # of faces: so many have not moved, however much maps are bent
+_MOST = 0.75  # of walls: so many have not moved, so that what more of them differ by is bent maps
 _FITS = 3.0  # standard deviations: a face farther off has moved, or is another
 
 
@@ -96,7 +96,12 @@ def _conclude(a: SeenFaces, b: SeenFaces, motion: PlaneMotion, centre_m: FloatAr
         unknown = np.full((3, 3), np.inf)
         return FrameFit(motion, unknown, centre_m, pairs, np.nan, np.nan, 0.0)
     stated_m2 = a.sigma_m[pairs.a] ** 2 + b.sigma_m[pairs.b] ** 2
-    scale_m = max(_scale_m(off_m, weight, _HALF), _scale_m(off_m, weight, _MOST), _LEAST_SCATTER_M)
+    # of how many faces a wall was seen says nothing of how bent maps are
+    of_wall = a.wall[pairs.a] + 1
+    n_faces = np.where(of_wall > 0, np.bincount(of_wall)[of_wall], 1)
+    by_wall = weight / np.tile(n_faces, 2)
+    scales_m = _scale_m(off_m, weight, _HALF), _scale_m(off_m, by_wall, _MOST)
+    scale_m = max(*scales_m, _LEAST_SCATTER_M)
     beyond_m2 = scale_m**2 - float(np.median(stated_m2))
     scatter_m = max(np.sqrt(max(beyond_m2, 0.0)), _LEAST_SCATTER_M)
     agrees = np.abs(off_m) <= _FITS * max(scale_m, 2 * _LEAST_SCATTER_M)

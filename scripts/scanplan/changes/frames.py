@@ -79,7 +79,7 @@ def tie_frames(
     fits = [fit_frame(a, b, start) for start in starts]
     contradicted = [_contradiction_m(a, b, *free, fit.motion) for fit in fits]
     scores = [
-        (fit.matched_m - against_m) / least_m
+        (_favour_m(fit) - against_m) / least_m
         for fit, against_m in zip(fits, contradicted, strict=True)
     ]
     order = sorted(range(len(fits)), key=lambda i: (-scores[i], i))
@@ -97,6 +97,11 @@ def tie_frames(
     return FrameTie(fit, min(share, 1.0), alike)
 
 
+def _favour_m(fit: FrameFit) -> float:
+    """Return the length of faces that speaks for a motion: of what has moved a little, half."""
+    return (fit.matched_m + float(fit.pairs.length_m.sum())) / 2
+
+
 def _check_fit(pair: str, fit: FrameFit, share: float) -> None:
     remedy = "give two surveys of one floor, of which both show the same walls"
     if share < _LEAST_SHARE or fit.matched_m < _LEAST_MATCHED_M:
@@ -105,9 +110,13 @@ def _check_fit(pair: str, fit: FrameFit, share: float) -> None:
         raise StageError(f"{pair}: do not fit each other, {fault}, {limit}; {remedy}")
     sigma_m = float(np.sqrt(np.diag(fit.covariance)[:2].max()))
     sigma_rad = float(np.sqrt(fit.covariance[2, 2]))
-    if not (sigma_m <= _MOST_SIGMA_M and sigma_rad <= _MOST_SIGMA_RAD):
+    if not np.isfinite(sigma_m):
         fault = "walls along one direction alone agree, which leave a shift along them free"
         raise StageError(f"{pair}: do not fit each other, {fault}; {remedy}")
+    if sigma_m > _MOST_SIGMA_M or sigma_rad > _MOST_SIGMA_RAD:
+        fault = f"the motion is known to {sigma_m:.3f} m and {np.degrees(sigma_rad):.2f}° alone"
+        limit = f"{_MOST_SIGMA_M:g} m and {np.degrees(_MOST_SIGMA_RAD):g}° are needed"
+        raise StageError(f"{pair}: do not fit each other, {fault}, {limit}; {remedy}")
 
 
 def _is_one(motion: PlaneMotion, other: PlaneMotion, a: SeenFaces) -> bool:

@@ -193,11 +193,16 @@ class Later:
     ending: IntArray
 
     def count_places(self, cells: BoolArray) -> tuple[int, int]:
-        """Return from how many places rays go through some cells (c,), and how many end there."""
-        counts = [
-            len(np.unique(told[cells[told[:, 0]], 2])) for told in (self.passing, self.ending)
-        ]
-        return counts[0], counts[1]
+        """Return from how many places rays go through some cells (c,), and from how many not.
+
+        A place says what most of its rays do: beside a wall that is gone others go on.
+        """
+        n_places = 1 + max(told[:, 2].max(initial=0) for told in (self.passing, self.ending))
+        passes, hits = (
+            np.bincount(told[cells[told[:, 0]], 2], minlength=n_places)
+            for told in (self.passing, self.ending)
+        )
+        return int(np.sum(passes > hits)), int(np.sum((hits > 0) & (hits >= passes)))
 
 
 def compare_looks(first: Looks, other: Looks) -> Later:

@@ -1,0 +1,273 @@
+"""Two surveys of a floor: frames, walls, openings, rooms and furniture, in a floor on paper."""
+
+import json
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from helpers import changing_floor
+from helpers.changing_floor import DOOR, INNER, SENSORS, survey
+from scanplan.changes import (
+    change_table,
+    comparison,
+    face_shifts,
+    frames,
+    opening_changes,
+    ray_cells,
+    room_changes,
+    verdicts,
+    wall_changes,
+)
+from scanplan.changes.frame_fit import fit_frame
+from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME
+from scanplan.errors import StageError
+from scanplan.project.dataset import pair_surveys
+from scanplan.store import schemas, tables
+
+MOVED_ROOM = PlaneMotion(np.radians(40), 3.0, 0.5)
+
+
+def tie(a, b):
+    free = (a.free, b.motion.inverse() and shapely.transform(b.free, b.motion.inverse().move))
+    faces = (a.faces, b.faces.moved(b.motion.inverse()))
+    return frames.tie_frames(faces, free, ("a", "b"))
+
+
+def compare(a, b):
+    """All changes between two surveys whose rays lie in one frame already."""
+    fit = fit_frame(a.faces, b.faces, PlaneMotion())
+    shifts = face_shifts.measure_shifts(a, b, fit)
+    changes = wall_changes.compare_walls(a, b, shifts)
+    changes += opening_changes.compare_openings(a, b)
+    changes += room_changes.compare_rooms(a, b, changes)
+    return changes + room_changes.compare_furniture(a, b)
+
+
+def told(changes, table, *wanted):
+    return [c for c in changes if c.table == table and c.verdict in (wanted or verdicts.CHANGES)]
+
+
+@settings(max_examples=15)
+@given(st.floats(-np.pi, np.pi), st.floats(-30, 30), st.floats(-30, 30))
+def test_a_motion_applied_to_a_plan_is_found_again(yaw_rad, x_m, y_m):
+    motion = PlaneMotion(yaw_rad, x_m, y_m)
+    found = tie(survey(), survey(motion=motion))
+    corner_m = np.array([8.0, 5.0])
+    there_m = found.fit.motion.move(motion.inverse().move(corner_m))
+    assert np.abs(there_m - corner_m).max() < 1e-3
+    assert found.share == pytest.approx(1.0, abs=0.02) and found.fit.residual_m < 1e-3
+    assert found.others == []
+
+
+def test_a_wall_that_moved_does_not_move_the_frame():
+    found = tie(survey(), survey([(5.1, 0, 5.1, 5)], [], motion=MOVED_ROOM))
+    off_m = found.fit.motion.move(MOVED_ROOM.inverse().move(np.array([8.0, 5.0]))) - [8.0, 5.0]
+    assert np.abs(off_m).max() < 0.01
+    sigma_m = np.sqrt(np.diag(found.fit.covariance)[:2])
+    assert ((sigma_m > 1e-3) & (sigma_m < 0.02)).all()
+
+
+def test_a_symmetric_floor_is_told_and_frames_are_left_as_they_are():
+    square = [(0, 0, 5, 0), (5, 0, 5, 5), (5, 5, 0, 5), (0, 5, 0, 0)]
+    a = survey([], [], outer=square)
+    found = tie(a, survey([], [], outer=square))
+    assert found.fit.motion.yaw_rad == pytest.approx(0.0, abs=1e-6)
+    turns = sorted(round(np.degrees(motion.yaw_rad)) % 360 for motion, _ in found.others)
+    assert turns == [90, 180, 270]
+    assert "3 other ways" in change_table.warn_of_others(found)
+
+
+def test_floors_that_do_not_fit_are_refused_in_one_line():
+    star = [(0, 0, 3, 1), (3, 1, 9, 0.2), (9, 0.2, 5, 7), (5, 7, 1.2, 4), (1.2, 4, 0, 0)]
+    with pytest.raises(StageError, match=r"a and b: do not fit .*% .*give two surveys") as fault:
+        tie(survey(), survey([], [], outer=star))
+    assert "\n" not in str(fault.value)
+
+
+def test_parallel_walls_alone_do_not_tie_frames():
+    corridor = [(0, 0, 20, 0), (20, 2, 0, 2)]
+    with pytest.raises(StageError, match="along one direction"):
+        tie(survey([], [], outer=corridor), survey([], [], outer=corridor))
+
+
+@settings(max_examples=10)
+@given(st.lists(st.sampled_from(SENSORS), min_size=1, max_size=6, unique=True))
+def test_what_has_not_changed_is_never_told_as_changed_whatever_was_seen(sensors):
+    a, b = survey(), survey(sensors=sensors)
+    assert [c for c in compare(a, b) if c.verdict in verdicts.CHANGES] == []
+    assert [c for c in compare(b, a) if c.verdict in verdicts.CHANGES] == []
+
+
+def test_a_survey_compared_with_itself_says_all_same():
+    changes = compare(survey(), survey())
+    assert {c.verdict for c in changes} == {SAME}
+    assert {(c.table, c.number_a) for c in changes} == {
+        *(("wall", number) for number in range(5)),
+        ("opening", 0),
+        ("room", 0),
+        ("room", 1),
+    }
+    assert all(c.number_b == c.number_a for c in changes)
+
+
+@pytest.mark.parametrize("by_m", [-0.3, -0.1, 0.05, 0.1, 0.3])
+def test_a_wall_that_moved_is_told_by_how_much_and_where_to(by_m):
+    a, b = survey(doors=[]), survey([(5 + by_m, 0, 5 + by_m, 5)], [])
+    (wall,) = [c for c in told(compare(a, b), "wall") if c.shape.length > 1]
+    assert (wall.verdict, wall.number_a, wall.number_b) == (MOVED, 4, 4) and wall.is_change
+    assert wall.moved_m == pytest.approx((by_m, 0.0), abs=0.005)
+    # to the left of a line that goes up
+    assert wall.shift_m == pytest.approx(-by_m, abs=0.005)
+    assert abs(wall.shift_m) > verdicts.SIGMAS * wall.sigma_m
+
+
+def test_a_shift_within_its_error_is_none():
+    changes = compare(survey(doors=[]), survey([(5.01, 0, 5.01, 5)], []))
+    assert told(changes, "wall") == []
+    (wall,) = [c for c in changes if c.table == "wall" and c.number_a == 4]
+    assert abs(wall.shift_m) == pytest.approx(0.01, abs=0.003)
+
+
+def test_a_wall_that_rays_go_through_is_gone_and_the_other_way_round_new():
+    a, b = survey(doors=[]), survey([], [])
+    gone = told(compare(a, b), "wall")
+    assert [(c.verdict, c.number_a, c.number_b) for c in gone] == [(GONE, 4, -1)]
+    assert gone[0].is_change and gone[0].shape.length > 4.4
+    new = told(compare(b, a), "wall")
+    assert [(c.verdict, c.number_a, c.number_b) for c in new] == [(NEW, -1, 4)]
+
+
+def test_a_wall_that_nobody_looked_at_is_not_seen():
+    a = survey(doors=[])
+    # from one room, with its door walled up: of the far outer walls nothing is known
+    b = survey(doors=[], sensors=[s for s in SENSORS if s[0] < 5])
+    changes = compare(a, b)
+    assert told(changes, "wall") == []
+    far = [c for c in changes if c.table == "wall" and c.number_a == 1]
+    # b draws it, though none of its rays came there
+    assert far and {c.verdict for c in far} <= {SAME, NOT_SEEN}
+    b.plan.faces["wall"][:] = -1
+    assert not [c for c in compare(a, b) if c.verdict in (GONE, NEW)]
+
+
+def test_rooms_beside_a_wall_that_went_have_changed_and_others_have_not():
+    a, b = survey(doors=[]), survey([(5.3, 0, 5.3, 5)], [])
+    areas = [shapely.box(0, 0, 5.2, 5), shapely.box(5.4, 0, 8, 5)]
+    b.plan.rooms["geometry"][:] = [shapely.to_wkb(area) for area in areas]
+    rooms = told(compare(a, b), "room")
+    assert [(c.verdict, c.number_a, c.number_b) for c in rooms] == [(MOVED, 0, 0), (MOVED, 1, 1)]
+    # parted otherwise, while no wall has changed
+    c = survey(doors=[])
+    c.plan.rooms["geometry"][:] = [shapely.to_wkb(area) for area in areas]
+    assert told(compare(a, c), "room") == []
+
+
+def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
+    a = survey()
+    walled = told(compare(a, survey(doors=[])), "opening")
+    assert [(c.verdict, c.kind_a, c.number_b) for c in walled] == [(GONE, "door", -1)]
+    assert walled[0].is_change
+    leaf = (5, 3.0, 5, 3.9)
+    b = survey(doors=[DOOR], hidden=[leaf])
+    empty = {name: values[:0] for name, values in b.plan.openings.items()}
+    object.__setattr__(b.plan, "openings", empty)
+    (door,) = [c for c in compare(a, b) if c.table == "opening"]
+    assert (door.verdict, door.number_b) == (SAME, -1) and "shut" in door.doubt
+
+
+def test_a_door_broken_through_is_new_and_takes_nothing_of_its_wall():
+    changes = compare(survey(doors=[]), survey())
+    (door,) = told(changes, "opening")
+    assert (door.verdict, door.number_a, door.number_b, door.kind_b) == (NEW, -1, 0, "door")
+    assert told(changes, "wall") == []
+
+
+def test_a_door_moved_along_its_wall_is_told_by_rays_at_its_edge():
+    there = (5, 3.3, 5, 4.2)
+    (door,) = told(compare(survey(), survey(doors=[there])), "opening")
+    assert door.verdict == MOVED and door.moved_m == pytest.approx((0.0, 0.3), abs=0.02)
+
+
+def test_furniture_that_was_carried_is_one_piece_and_no_wall():
+    before, after = shapely.box(1.4, 3.9, 2.2, 4.4), shapely.box(2.6, 3.9, 3.4, 4.4)
+    changes = compare(survey(pieces=[before]), survey(pieces=[after]))
+    (piece,) = told(changes, "furniture")
+    assert (piece.verdict, piece.number_a, piece.number_b) == (MOVED, 0, 0)
+    assert piece.moved_m == pytest.approx((1.2, 0.0), abs=0.01)
+    assert told(changes, "wall") == [] == told(changes, "opening")
+
+
+def looks(hits, passes, places=5):
+    """Looks of counts (c, r), each ray from one of some places in turn."""
+    hits, passes = np.array(hits), np.array(passes)
+    rows = []
+    for counts in (passes, hits):
+        cells, heights = np.nonzero(counts)
+        times = counts[cells, heights]
+        told_of = np.column_stack([np.repeat(cells, times), np.repeat(heights, times)])
+        rows.append(np.column_stack([told_of, np.arange(len(told_of)) % places]))
+    return ray_cells.Looks(hits, passes, *rows)
+
+
+def test_rays_above_what_was_solid_deny_nothing():
+    half_height = looks([[5, 5, 0, 0]], [[0, 0, 9, 9]])
+    over_it = looks([[0, 0, 0, 0]], [[0, 0, 9, 9]])
+    through_it = looks([[0, 0, 0, 0]], [[9, 9, 9, 9]])
+    assert not ray_cells.compare_looks(half_height, over_it).is_passed.any()
+    assert ray_cells.compare_looks(half_height, through_it).is_passed.all()
+
+
+def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
+    planar = looks([[7]], [[0]])
+    above_a_bed = looks([[0, 6, 0, 0]], [[0, 0, 9, 9]])
+    never_low = looks([[0, 0, 0, 0]], [[0, 0, 9, 9]])
+    all_over = looks([[0, 0, 0, 0]], [[0, 9, 9, 9]])
+    for seen, is_gone in ((above_a_bed, False), (never_low, False), (all_over, True)):
+        assert ray_cells.compare_looks(planar, seen).is_passed.tolist() == [is_gone]
+
+
+@given(st.integers(0, 9), st.integers(0, 9))
+def test_each_place_more_that_shows_a_change_makes_it_likelier(n_for, n_against):
+    p = verdicts.rate_places(n_for, n_against)
+    assert 0 < p < 1
+    assert verdicts.rate_places(n_for + 1, n_against) >= p
+    assert verdicts.rate_places(n_for, n_against + 1) <= p
+
+
+def test_the_table_keeps_all_and_states_the_motion(tmp_path):
+    a, b = survey(doors=[]), survey([(5.1, 0, 5.1, 5)], [], motion=MOVED_ROOM)
+    found = comparison.Comparison(a, b, tie(a, b), compare(a, b))
+    path = tmp_path / "changes.parquet"
+    columns = change_table.tabulate_changes(found.changes)
+    tables.write_table(path, schemas.CHANGES, columns, notes=change_table.state_tie(found))
+    read = tables.read_table(path, schemas.CHANGES)
+    assert read["verdict"].tolist() == [c.verdict for c in found.changes]
+    assert set(read["verdict"]) <= set(verdicts.VERDICTS)
+    yaw_rad, x_m, y_m = json.loads(tables.read_note(path, schemas.CHANGES, "motion"))
+    assert (np.degrees(yaw_rad), x_m, y_m) == pytest.approx((40, 3.0, 0.5), abs=0.02)
+    assert sum(read["likely"]) == sum(c.is_change for c in found.changes) > 0
+
+
+def test_what_is_compared_is_each_with_the_one_before():
+    assert pair_surveys(["a", "b", "c"]) == [("a", "b"), ("b", "c")]
+    with pytest.raises(StageError, match=r"needs two .*give the earlier one first"):
+        pair_surveys(["a"])
+
+
+def test_the_floor_of_the_tests_is_seen_as_it_is_drawn():
+    points_m = np.concatenate(
+        [
+            xyz[:, :2]
+            for _, xyz in changing_floor.cast(
+                SENSORS,
+                np.array(
+                    [np.array(line, float).reshape(2, 2) for line in [*changing_floor.OUTER, INNER]]
+                ),
+            )
+        ]
+    )
+    assert ((points_m >= -1e-9) & (points_m <= [8 + 1e-9, 5 + 1e-9])).all()
