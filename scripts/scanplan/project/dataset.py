@@ -308,7 +308,7 @@ def pair_surveys(names: Sequence[str]) -> list[tuple[str, str]]:
         If there are fewer than two.
     """
     if len(names) < 2:
-        example = """--config 'dataset=["first", "second"]'"""
+        example = "`changes --config 'dataset=[FIRST, SECOND]'`"
         raise StageError(
             f"changes: needs two surveys of a floor, {len(names)} is given ({', '.join(names)});"
             f" give the earlier one first: {example}"

@@ -1,0 +1,84 @@
+"""Two surveys of a floor, the later in another frame after a wall was moved, by one command."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from helpers.project_copy import Project
+from scanplan.project import dataset
+from scanplan.store import schemas, tables
+
+pytestmark = pytest.mark.workflow
+DRAWING = "config/buildings/tiny_office.geojson"
+OLD_M, NEW_M = 3.0, 3.1
+TURN_RAD, SHIFT_M = math.radians(40), np.array([3.0, 0.5])
+TURN = np.array(
+    [[math.cos(TURN_RAD), -math.sin(TURN_RAD)], [math.sin(TURN_RAD), math.cos(TURN_RAD)]]
+)
+
+
+def rebuild(coordinates):
+    """The places of a drawing after the wall at x = 3.0 was moved, in another frame."""
+    if isinstance(coordinates[0], list):
+        return [rebuild(inner) for inner in coordinates]
+    x, y = coordinates
+    return (TURN @ [NEW_M if x == OLD_M and y > 1 else x, y] + SHIFT_M).tolist()
+
+
+@pytest.fixture(scope="module")
+def compared(project_root, tmp_path_factory):
+    project = Project(project_root, tmp_path_factory.mktemp("changes"))
+    drawing = json.loads((project_root / DRAWING).read_text())
+    for feature in drawing["features"]:
+        feature["geometry"]["coordinates"] = rebuild(feature["geometry"]["coordinates"])
+    (project.folder / "later.geojson").write_text(json.dumps(drawing))
+    common = "sensor: {n_azimuth: 360}, drive: {speed_m_s: 1.0}"
+    for name, building, seed in (("before", "tiny_office", 1), ("after", "later.geojson", 2)):
+        survey = f"simulate: {{building: {building}, seed: {seed}, {common}}}\n"
+        (project.folder / f"{name}.yaml").write_text(survey)
+    result = project.run("changes", *given("before.yaml", "after.yaml"))
+    assert result.returncode == 0, result.stderr
+    return project
+
+
+def given(*files):
+    return ("--configfile", "config/config.yaml", "--config", f"dataset=[{','.join(files)}]")
+
+
+def test_the_moved_wall_is_told_and_nothing_else(compared):
+    path = compared.folder / "results/after/changes/before/changes.parquet"
+    columns = tables.read_table(path, schemas.CHANGES)
+    rows = np.flatnonzero(columns["likely"] & (columns["element"] != "furniture"))
+    found = {(columns["element"][row], columns["verdict"][row]) for row in rows}
+    assert found == {("wall", "moved"), ("room", "moved")}
+    is_wall = rows[columns["element"][rows] == "wall"]
+    assert columns["x_moved_m"][is_wall] == pytest.approx(NEW_M - OLD_M, abs=0.02)
+    assert columns["y_moved_m"][is_wall] == pytest.approx(0.0, abs=0.02)
+    assert columns["length_m"][is_wall].sum() > 2
+    assert not (columns["verdict"] == "gone").any()
+
+
+def test_the_frames_are_tied(compared):
+    path = compared.folder / "results/after/changes/before/changes.parquet"
+    yaw_rad, *_ = json.loads(tables.read_note(path, schemas.CHANGES, "motion"))
+    assert math.degrees(yaw_rad) == pytest.approx(-40, abs=0.5)
+
+
+def test_all_files_are_there_and_the_page_stands_alone(compared):
+    folder = compared.folder / "results/after/changes/before"
+    assert {file.name for file in folder.iterdir()} == {f"changes.{s}" for s in dataset.CHANGES}
+    page = (folder / "changes.html").read_text()
+    assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
+    assert 'type="range"' in page and page.count("<svg") == 3
+    features = json.loads((folder / "changes.geojson").read_text())["features"]
+    moved = [f for f in features if f["properties"]["verdict"] == "moved"]
+    assert moved and all(f["id"] == f"change-{f['properties']['change']}" for f in features)
+
+
+def test_one_survey_alone_is_refused_in_a_line(compared):
+    result = compared.run("changes", "--dry-run", *given("before.yaml"))
+    lines = [line for line in result.stderr.splitlines() if line.startswith("scanplan: ")]
+    assert result.returncode != 0 and "Traceback" not in result.stderr
+    assert len(lines) == 1 and "needs two surveys" in lines[0]
