@@ -10,6 +10,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py fit_things FOLDER [HALF | KIND | FLOOR ...]
        run.py confidence FOLDER
        run.py next_visit FOLDER [SURVEY ...]
+       run.py changes FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
@@ -61,6 +62,9 @@ element by element.
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
 `guard`, with any seed; drives and plans are kept in FOLDER.
+
+`changes` compares surveys of the demo office with those of it after it was rebuilt, by other
+sensors and in another frame, and counts what is told rightly; surveys are kept in FOLDER.
 
 `sheets` counts words that lie on others on the sheets of surveys that are registered in RESULTS,
 and `ids` the elements that keep their GlobalIds over twenty changes of settings. Their plans are
@@ -205,6 +209,13 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
+def bench_changes(folder: str, *names: str) -> None:
+    """What is told of a floor that was rebuilt, against what was done to it."""
+    import changes_bench
+
+    changes_bench.bench(ROOT, Path(folder), names)
+
+
 def bench_sheets(results: str, folder: str, *names: str) -> None:
     """Words on sheets that lie on others, and the least height of letters."""
     import exchange_bench
@@ -275,6 +286,7 @@ APART: dict[str, Callable[..., None]] = {
     "overlays": bench_overlays,
     "growth": bench_growth,
     "pipeline": bench_pipeline,
+    "changes": bench_changes,
     "sheets": bench_sheets,
     "ids": bench_ids,
 }

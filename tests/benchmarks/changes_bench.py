@@ -1,0 +1,325 @@
+"""What is told of the changes of a floor that is rebuilt, in pairs of simulated surveys.
+
+The demo office before and after edits of its drawing, in another frame, by other sensors and on
+other ways; edits are known, so that each change that is told is right or wrong.
+"""
+
+import copy
+import json
+import math
+import random
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import shapely
+import shapely.affinity
+import yaml
+
+from scanplan.changes import comparison
+from scanplan.changes.verdicts import GONE, MOVED, NEW, Change
+from scanplan.plan import floorplan_files
+from scanplan.store import registered_scans, tables
+
+Drawing = dict[str, Any]
+TURN_RAD, SHIFT_M = math.radians(40), (3.0, 0.5)
+"""Of the frame of every later survey."""
+_LASER = {
+    "mount": {"height_m": 0.3},
+    "sensor": {"model": "laser", "n_azimuth": 541, "field_deg": 270.0, "max_range_m": 30.0},
+    "people": {"count": 3},
+}
+SENSORS: dict[str, dict[str, Any]] = {
+    "vlp": {},
+    "las": _LASER,
+    "ous": {"sensor": {"model": "ouster64", "n_azimuth": 512}},
+}
+"""By the last word of a survey's name."""
+SURVEYS = (
+    *("a_vlp", "a_las", "a_ous", "same_vlp", "same_las", "furn_vlp", "furn_las"),
+    *("mix1_vlp", "mix1_las", "mix2_vlp", "mix2_ous", "part_vlp"),
+)
+"""By what was done to the floor (a: nothing yet) and the sensor; `part` is a shorter way."""
+_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+_NEAR_M = 0.4  # of a change from where it was made: a wall moved by 30 cm, and what plans err by
+_FOUND = 0.5  # of the length of an edit that rows of its verdict cover
+_PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
+_PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
+
+
+@dataclass(frozen=True)
+class Edit:
+    """What was done to a wall or an opening: where it was, or is, in the frame before.
+
+    `counts` says whether it has to be found: by 10 cm or more.
+    """
+
+    table: str
+    verdict: str
+    ends_m: tuple[tuple[float, float], tuple[float, float]]
+    counts: bool = True
+
+    @property
+    def line(self) -> shapely.LineString:
+        """Its line."""
+        return shapely.LineString(self.ends_m)
+
+
+def bench(project: Path, folder: Path, names: Sequence[str]) -> None:
+    """Simulate and plan surveys as far as they are not there, and print what is told of pairs.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of `SURVEYS`; all by default.
+    """
+    wanted = list(names) or list(SURVEYS)
+    for name in wanted:
+        _make_plan(project, folder, name)
+    evaluate(folder, wanted)
+
+
+def evaluate(folder: Path, names: Sequence[str]) -> None:
+    """Print precision and recall over all pairs of surveys before and after."""
+    earlier = [name for name in names if name.startswith("a_")]
+    later = [name for name in names if not name.startswith("a_")]
+    totals = [0] * 6
+    for before in earlier:
+        for after in later:
+            found = _compare(folder, before, after)
+            counts = _judge(found.changes, EDITS[after.partition("_")[0]])
+            totals = [total + count for total, count in zip(totals, counts, strict=True)]
+            print(f"changes, {before} to {after}: {_say(counts)}", flush=True)
+    print(f"changes, all: {_say(totals)}")
+
+
+def _say(counts: Sequence[int]) -> str:
+    right, told, found, doubted, made, wrongly_gone = counts
+    return (
+        f"{right} of {told} told are right; {found} of {made} edits are told, {doubted} more as"
+        f" doubtful; {wrongly_gone} told as gone that are there"
+    )
+
+
+def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> list[int]:
+    """Return the counts that `_say` says.
+
+    A change of walls and openings is right if an edit of its verdict was made there; a wall that
+    moved may also be gone and new.
+    """
+    likely = [c for c in changes if c.is_change and c.table in ("wall", "opening")]
+    right = [c for c in likely if any(_fits(c, edit) for edit in edits)]
+    wrong = [c for c in likely if c not in right]
+    for change in wrong:
+        print(f"  wrong: {change.table} {change.verdict} {change.shape.wkt[:70]} {change.p:.2f}")
+    made = [edit for edit in edits if edit.counts]
+    seen = [edit for edit in made if not _is_unseen(edit, changes)]
+    found = [edit for edit in seen if _is_found(edit, likely)]
+    told = [edit for edit in seen if _is_found(edit, changes)]
+    for edit in seen:
+        if edit not in found:
+            print(f"  missed: {edit.table} {edit.verdict} {edit.ends_m}")
+    gone = sum(c.verdict == GONE for c in wrong)
+    doubted = len(told) - len(found)
+    return [len(right), len(likely), len(found), doubted, len(seen), gone]
+
+
+def _fits(change: Change, edit: Edit) -> bool:
+    verdicts = {edit.verdict, GONE, NEW} if edit.verdict == MOVED else {edit.verdict}
+    # a door in a wall that was taken away went with it
+    is_of_table = change.table == edit.table or (edit.table == "wall" and edit.verdict == GONE)
+    far_m = shapely.hausdorff_distance(change.shape, edit.line)
+    beside = shapely.distance(shapely.get_point(change.shape, [0, -1]), edit.line).max()
+    return change.verdict in verdicts and is_of_table and bool(min(far_m, beside) <= _NEAR_M)
+
+
+def _is_found(edit: Edit, likely: Sequence[Change]) -> bool:
+    rows = [c.shape for c in likely if _fits(c, edit)]
+    near = edit.line.buffer(_NEAR_M + 0.1)
+    return sum(row.intersection(near).length for row in rows) >= _FOUND * edit.line.length
+
+
+def _is_unseen(edit: Edit, changes: Sequence[Change]) -> bool:
+    """Return whether most of an edit is told as not seen by one of the two."""
+    rows = [c.shape for c in changes if c.table == edit.table and c.verdict == "not_seen"]
+    near = edit.line.buffer(_NEAR_M)
+    return sum(row.intersection(near).length for row in rows) >= _FOUND * edit.line.length
+
+
+def _compare(folder: Path, before: str, after: str) -> comparison.Comparison:
+    plans, scans = [], []
+    for name in (before, after):
+        results = folder / "results" / name
+        files = {table: results / f"plan/{table}.parquet" for table in _TABLES}
+        plans.append(floorplan_files.read_floorplan(files, name))
+        registered = registered_scans.read_registered_scans(results / "registration.parquet")
+        scans.append((tables.ScanStore(results / "scans.parquet"), registered))
+    return comparison.compare_surveys((plans[0], plans[1]), (scans[0], scans[1]))
+
+
+def _make_plan(project: Path, folder: Path, name: str) -> None:
+    kind, _, sensor = name.partition("_")
+    drawing = folder / f"drawings/{kind}.geojson"
+    drawing.parent.mkdir(parents=True, exist_ok=True)
+    drawing.write_text(json.dumps(draw(project, kind)))
+    simulated: dict[str, Any] = {
+        "building": str(drawing.resolve()),
+        "seed": 1 + SURVEYS.index(name),
+        **SENSORS[sensor],
+    }
+    if kind == "same":
+        simulated["site"] = {"route": "rooms"}
+    if kind == "furn":
+        simulated["site"] = {"leaves": 0.6}
+    survey = folder / f"surveys/{name}.yaml"
+    survey.parent.mkdir(parents=True, exist_ok=True)
+    survey.write_text(yaml.safe_dump({"simulate": simulated}))
+    wanted = [f"results/{name}/plan/{table}.parquet" for table in _TABLES]
+    command = [sys.executable, "-m", "snakemake", "-s", str(project / "Snakefile"), *wanted]
+    command += ["--cores", "2", "--config", f"dataset={survey.resolve()}"]
+    subprocess.run(command, cwd=folder, check=True)
+
+
+def draw(project: Path, kind: str) -> Drawing:
+    """Return the demo office after what a kind of surveys has done to it."""
+    path = project / "config/buildings/demo_office.geojson"
+    drawing: Drawing = json.loads(path.read_text(encoding="utf-8"))
+    rebuild = {"mix1": _rebuild_first, "part": _rebuild_first, "mix2": _rebuild_second}
+    if kind in rebuild:
+        rebuild[kind](drawing)
+    if kind == "furn":
+        _carry_furniture(drawing)
+    if kind in ("mix1", "mix2"):
+        drawing["features"] = [f for f in drawing["features"] if _kind(f) != "waypoints"]
+    if kind == "part":
+        _find(drawing, "waypoints")["geometry"]["coordinates"] = [*_PART_M, *_PART_ON_M]
+    return drawing if kind == "a" else _turn(drawing)
+
+
+EDITS: dict[str, tuple[Edit, ...]] = {
+    "same": (),
+    "furn": (),
+    "mix1": (
+        Edit("wall", MOVED, ((6.8, 0.15), (6.8, 4.9))),
+        Edit("wall", MOVED, ((7.4, 7.0), (7.4, 11.85))),
+        # a refrigerator hides most of this part, the other side of a passage
+        Edit("wall", GONE, ((3.2, 7.0), (3.2, 8.0)), counts=False),
+        Edit("wall", GONE, ((3.2, 9.2), (3.2, 11.85))),
+        Edit("wall", NEW, ((11.3, 1.7), (14.7, 1.7))),
+        Edit("opening", GONE, ((13.4, 5.0), (14.2, 5.0))),
+        Edit("opening", NEW, ((11.2, 3.15), (11.2, 4.05))),
+    ),
+    "mix2": (
+        Edit("wall", MOVED, ((3.8, 0.15), (3.8, 4.9)), counts=False),
+        Edit("wall", MOVED, ((11.2, 0.15), (11.2, 4.9)), counts=False),
+        Edit("wall", MOVED, ((12.9, 7.0), (12.9, 11.85))),
+        Edit("wall", GONE, ((11.2, 7.0), (11.2, 11.85))),
+        Edit("wall", NEW, ((3.25, 9.6), (4.9, 9.6))),
+        Edit("opening", GONE, ((1.25, 6.9), (2.15, 6.9))),
+        Edit("opening", NEW, ((7.4, 9.05), (7.4, 9.95))),
+    ),
+}
+"""What was done to walls and openings."""
+EDITS["part"] = tuple(edit for edit in EDITS["mix1"] if edit.ends_m[0][0] < 11.25)
+"""The shorter way leads past what is farther east."""
+
+
+def _rebuild_first(drawing: Drawing) -> None:
+    """Move walls by 10 and 30 cm, take one away, add one, wall a door up, break one through."""
+    _find(drawing, "wall", [[6.8, 0], [6.8, 5]])["geometry"]["coordinates"] = [[6.9, 0], [6.9, 5]]
+    moved = _find(drawing, "wall", [[7.4, 6.9], [7.4, 12]])
+    moved["geometry"]["coordinates"] = [[7.7, 6.9], [7.7, 12]]
+    _remove(drawing, "wall", [[3.2, 6.9], [3.2, 12]])
+    _remove(drawing, "opening", [[3.2, 8.0], [3.2, 9.2]])
+    _remove(drawing, "opening", [13.8, 5])
+    drawing["features"] += [_wall([[11.2, 1.7], [14.8, 1.7]]), _door([11.2, 3.6])]
+
+
+def _rebuild_second(drawing: Drawing) -> None:
+    """Move walls by 2, 5 and 10 cm, take one away, add one, wall a door up, break one through."""
+    _find(drawing, "wall", [[3.8, 0], [3.8, 5]])["geometry"]["coordinates"] = [[3.85, 0], [3.85, 5]]
+    _find(drawing, "opening", [3.8, 3.0])["geometry"]["coordinates"] = [3.85, 3.0]
+    nudged = _find(drawing, "wall", [[11.2, 0], [11.2, 5]])
+    nudged["geometry"]["coordinates"] = [[11.22, 0], [11.22, 5]]
+    moved = _find(drawing, "wall", [[12.9, 6.9], [12.9, 12]])
+    moved["geometry"]["coordinates"] = [[13.0, 6.9], [13.0, 12]]
+    _remove(drawing, "wall", [[11.2, 6.9], [11.2, 12]])
+    _remove(drawing, "opening", [1.7, 6.9])
+    drawing["features"] += [_wall([[3.2, 9.6], [4.9, 9.6]]), _door([7.4, 9.5])]
+
+
+def _carry_furniture(drawing: Drawing) -> None:
+    """Carry every piece elsewhere in its room, clear of walls and way, by 0.4 to 2.1 m."""
+    drawn = random.Random(3)
+    lines = [f["geometry"]["coordinates"] for f in drawing["features"] if _kind(f) == "wall"]
+    way = shapely.LineString(_find(drawing, "waypoints")["geometry"]["coordinates"])
+    walls = shapely.union_all([shapely.LineString(line).buffer(0.2) for line in lines])
+    taken = walls.union(way.buffer(0.4))
+    for feature in drawing["features"]:
+        if _kind(feature) != "furniture":
+            continue
+        piece = shapely.Polygon(feature["geometry"]["coordinates"][0])
+        for carried in _carry(piece, drawn):
+            passed = shapely.LineString([piece.centroid, carried.centroid])
+            if not carried.intersects(taken) and not passed.intersects(walls):
+                corners = [list(corner) for corner in carried.exterior.coords]
+                feature["geometry"]["coordinates"] = [corners]
+                break
+
+
+def _carry(piece: shapely.Polygon, drawn: random.Random) -> Iterator[shapely.Polygon]:
+    for _ in range(200):
+        x_m, y_m = drawn.uniform(-1.5, 1.5), drawn.uniform(-1.5, 1.5)
+        if math.hypot(x_m, y_m) >= 0.4:
+            yield shapely.affinity.translate(piece, x_m, y_m)
+
+
+def _turn(drawing: Drawing) -> Drawing:
+    cosine, sine = math.cos(TURN_RAD), math.sin(TURN_RAD)
+
+    def turn(coordinates: Any) -> Any:
+        if isinstance(coordinates[0], list | tuple):
+            return [turn(inner) for inner in coordinates]
+        x, y = coordinates
+        return [cosine * x - sine * y + SHIFT_M[0], sine * x + cosine * y + SHIFT_M[1]]
+
+    turned = copy.deepcopy(drawing)
+    for feature in turned["features"]:
+        feature["geometry"]["coordinates"] = turn(feature["geometry"]["coordinates"])
+    return turned
+
+
+def _kind(feature: Drawing) -> str:
+    return feature["properties"]["kind"]
+
+
+def _find(drawing: Drawing, kind: str, coordinates: Any = None) -> Drawing:
+    return next(
+        feature
+        for feature in drawing["features"]
+        if _kind(feature) == kind and coordinates in (None, feature["geometry"]["coordinates"])
+    )
+
+
+def _remove(drawing: Drawing, kind: str, coordinates: Any) -> None:
+    drawing["features"].remove(_find(drawing, kind, coordinates))
+
+
+def _wall(ends_m: Sequence[Sequence[float]]) -> Drawing:
+    return {
+        "type": "Feature",
+        "properties": {"kind": "wall", "thickness_m": 0.1},
+        "geometry": {"type": "LineString", "coordinates": ends_m},
+    }
+
+
+def _door(place_m: Sequence[float]) -> Drawing:
+    properties = {"kind": "opening", "type": "door", "width_m": 0.9, "sill_m": 0, "lintel_m": 2.05}
+    return {
+        "type": "Feature",
+        "properties": properties,
+        "geometry": {"type": "Point", "coordinates": place_m},
+    }
