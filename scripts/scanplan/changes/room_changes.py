@@ -11,7 +11,16 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME, Change
+from scanplan.changes.verdicts import (
+    CHANGED,
+    CHANGES,
+    GONE,
+    MOVED,
+    NEW,
+    NOT_SEEN,
+    SAME,
+    Change,
+)
 from scanplan.geometry import overlays
 from scanplan.store.schemas import PIECE
 from scanplan.types import Array, FloatArray, IntArray
@@ -21,7 +30,7 @@ _ALIKE = 0.5  # intersection over union of two rooms that are one
 _TOUCH_M = (
     0.5  # of a changed wall from the outline of a room: half of a thick one, and what ends err
 )
-_CHANGED = 0.02  # of a room's area, beside walls that have changed: more than its outline errs by
+_CHANGED_SHARE = 0.01  # of a room's area, beside a wall that has changed: 5 cm of a room of 5 m
 _IN_PLACE = 0.3  # intersection over union of two outlines of one piece, each seen in part
 _PASSED = 0.5  # of the cells across a piece that rays go through where it stood
 _HIT = 0.3  # of those that rays end at
@@ -40,24 +49,22 @@ def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Chang
     changes : sequence of Change
         Those of walls count.
     """
-    walls = [c for c in changes if c.is_change and c.table == "wall"]
-    moved = [shapely.affinity.translate(c.shape, *c.moved_m) for c in walls if c.verdict == MOVED]
-    built = overlays.unite_shapes([*(c.shape for c in walls), *moved])
+    walls = [c for c in changes if c.table == "wall" and c.verdict in CHANGES]
     areas_a, areas_b = (np.array([s.place(area) for area in s.plan.areas], object) for s in (a, b))
     shared = _share_areas(areas_a, areas_b)
     pairs = _pair_most(shared, _ALIKE)
     numbers_a, numbers_b = a.plan.rooms["room"], b.plan.rooms["room"]
     found = [
-        _judge_pair(int(numbers_a[i]), int(numbers_b[j]), areas_a[i], areas_b[j], built)
+        _judge_pair(int(numbers_a[i]), int(numbers_b[j]), areas_a[i], areas_b[j], walls)
         for i, j in pairs
     ]
     found += [
-        _judge_alone(int(numbers_a[i]), areas_a[i], b.free, built)
+        _judge_alone(int(numbers_a[i]), areas_a[i], b.free, walls)
         for i in range(len(areas_a))
         if i not in {i for i, _ in pairs}
     ]
     new = [
-        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, built)
+        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, walls)
         for j in range(len(areas_b))
         if j not in {j for _, j in pairs}
     ]
@@ -65,27 +72,48 @@ def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Chang
 
 
 def _judge_pair(
-    number_a: int, number_b: int, area: BaseGeometry, other: BaseGeometry, built: BaseGeometry
+    number_a: int,
+    number_b: int,
+    area: BaseGeometry,
+    other: BaseGeometry,
+    walls: Sequence[Change],
 ) -> Change:
     apart = overlays.unite_areas(
         [overlays.subtract_areas(area, other), overlays.subtract_areas(other, area)]
     )
-    near = overlays.intersect_areas(apart, overlays.buffer_shapes(built, _TOUCH_M))
-    is_changed = near.area > _CHANGED * area.area
-    return Change("room", number_a, number_b, MOVED if is_changed else SAME, verdicts.LIKELY, area)
+    p_of = [CHANGED]
+    for wall in walls:
+        around = overlays.buffer_shapes(_places(wall), _TOUCH_M)
+        if overlays.intersect_areas(apart, around).area > _CHANGED_SHARE * area.area:
+            p_of.append(wall.p)
+    p = max(p_of)
+    is_changed = p >= verdicts.LIKELY
+    return Change(
+        "room", number_a, number_b, MOVED if is_changed else SAME, p if is_changed else 1 - p, area
+    )
+
+
+def _places(wall: Change) -> BaseGeometry:
+    """Return where a wall that has changed was, or is."""
+    if wall.verdict != MOVED:
+        return wall.shape
+    return overlays.unite_shapes(
+        [wall.shape, shapely.affinity.translate(wall.shape, *wall.moved_m)]
+    )
 
 
 def _judge_alone(
-    number: int, area: BaseGeometry, seen: BaseGeometry, built: BaseGeometry
+    number: int, area: BaseGeometry, seen: BaseGeometry, walls: Sequence[Change]
 ) -> Change:
     share = overlays.intersect_areas(area, seen).area / area.area
     if share < _SEEN:
         return Change("room", number, -1, NOT_SEEN, math.nan, area)
-    is_touched = not built.is_empty and shapely.dwithin(area, built, _TOUCH_M)
-    doubt = "" if is_touched else "parted otherwise, by no wall that has changed"
-    return Change(
-        "room", number, -1, GONE if is_touched else SAME, verdicts.LIKELY, area, doubt=doubt
-    )
+    near = [wall.p for wall in walls if shapely.dwithin(area, _places(wall), _TOUCH_M)]
+    p = max([CHANGED, *near])
+    if p >= verdicts.LIKELY:
+        return Change("room", number, -1, GONE, p, area)
+    doubt = "parted otherwise, by no wall that has surely changed"
+    return Change("room", number, -1, SAME, 1 - p, area, doubt=doubt)
 
 
 def compare_furniture(a: Survey, b: Survey) -> list[Change]:
@@ -100,9 +128,7 @@ def compare_furniture(a: Survey, b: Survey) -> list[Change]:
     shapes_b, numbers_b = _list_pieces(b)
     pairs = _pair_most(_share_areas(shapes_a, shapes_b), _IN_PLACE)
     found = [
-        Change(
-            "furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, verdicts.LIKELY, shapes_a[i]
-        )
+        Change("furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, 1 - CHANGED, shapes_a[i])
         for i, j in pairs
     ]
     lone_a = [i for i in range(len(shapes_a)) if i not in {i for i, _ in pairs}]

@@ -14,7 +14,8 @@ VERDICTS = (SAME, MOVED, GONE, NEW, NOT_SEEN)
 CHANGES = (MOVED, GONE, NEW)
 LIKELY = 0.9
 """A change that is less likely is doubtful: to be verified on site."""
-_CHANGED = 0.05  # of the elements of a floor, before either survey is asked: few are rebuilt
+CHANGED = 0.05
+"""Of the elements of a floor, before either survey is asked: few are rebuilt."""
 _PLACE_TELLS = 9.0  # a place tells what is right nine times as often as what is wrong
 _MOST_PLACES = 6  # more err alike, by one map
 REACH_M = 0.6
@@ -69,7 +70,7 @@ class Change:
         return self.verdict in CHANGES and self.p >= LIKELY
 
 
-def rate_places(n_for: int, n_against: int, usual: float = _CHANGED) -> float:
+def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:
     """Return how likely a change is that rays of some places show, and of others deny.
 
     Parameters
@@ -102,6 +103,6 @@ def rate_shift(shift_m: float, sigma_m: float, n_shown: int) -> float:
     """
     density = math.exp(-0.5 * (shift_m / sigma_m) ** 2) / (sigma_m * math.sqrt(2 * math.pi))
     wrong = _WRONG**n_shown
-    moved = _CHANGED / (2 * REACH_M)
-    same = (1 - _CHANGED) * ((1 - wrong) * density + wrong / (2 * REACH_M))
+    moved = CHANGED / (2 * REACH_M)
+    same = (1 - CHANGED) * ((1 - wrong) * density + wrong / (2 * REACH_M))
     return moved / (moved + same)

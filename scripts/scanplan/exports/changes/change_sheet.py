@@ -1,7 +1,7 @@
 """The sheet of what changed between two surveys: both plans over one another, and a table."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -46,7 +46,12 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
     drawn = list(list_drawn(compared, ("wall", "opening", "furniture")))
     marks = list(_draw(compared, drawn))
     changed = {c.change.number_a for c in drawn if c.change.table == "opening"}
-    symbols = [s for s in content.list_symbols(compared.a.plan) if not _is_of(s, changed)]
+    # what is doubtful of the earlier plan is told by its own sheet
+    symbols = [
+        replace(symbol, verify=False, facts={})
+        for symbol in content.list_symbols(compared.a.plan)
+        if not _is_of(symbol, changed)
+    ]
     tagged = [of for of in drawn if of.change.table in _TAGGED and of.change.is_change]
     listed = tagged[:_MOST_ROWS]
     turn_deg = -compared.a.plan.main_direction_deg
