@@ -223,9 +223,9 @@ def test_rays_above_what_was_solid_deny_nothing():
 
 def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
     planar = looks([[7]], [[0]])
-    above_a_bed = looks([[0, 6, 0, 0]], [[0, 0, 9, 9]])
-    never_low = looks([[0, 0, 0, 0]], [[0, 0, 9, 9]])
-    all_over = looks([[0, 0, 0, 0]], [[0, 9, 9, 9]])
+    above_a_bed = looks([[0, 6, 0, 0]], [[9, 0, 9, 9]])
+    never_low = looks([[0, 0, 0, 0]], [[0, 9, 9, 9]])
+    all_over = looks([[0, 0, 0, 0]], [[9, 9, 9, 9]])
     for seen, is_gone in ((above_a_bed, False), (never_low, False), (all_over, True)):
         assert ray_cells.compare_looks(planar, seen).is_passed.tolist() == [is_gone]
 

@@ -155,6 +155,8 @@ def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
     if np.mean(later.is_passed) < _PASSED or p < 1 / 2:
         return same
     x_m, y_m = (shift_m * one.line.direction).tolist()
+    # of what is not known to be one opening it is no more than possible
+    p *= 1 / 2 if same.doubt else 1.0
     return replace(same, verdict=MOVED, p=p, moved_m=(x_m, y_m))
 
 

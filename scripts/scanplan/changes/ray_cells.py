@@ -23,7 +23,7 @@ _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _AT_M = 0.1  # before and behind a wall's sides: what poses, ranges and two maps err by
 _HIGHEST_M = 2.0  # above the floor: lintels, and what planar scanners are mounted below
-_LOW_ROW = 1  # 0.25 to 0.5 m: a bed, or the seat of a chair
+_LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
 
 

@@ -66,8 +66,9 @@ def read_rays(
 ) -> RaySet:
     """Return rays of scans all over a drive in another frame, heights above the plan's floor.
 
-    Those that end at the floor or the ceiling say nothing of walls and are left out. Of long
-    recordings scans are thinned evenly, and of dense scans rays by chance.
+    Those that end at the floor or the ceiling say nothing of walls and are left out. Where the
+    floor was not seen heights mean nothing, as of planar scans. Of long recordings scans are
+    thinned evenly, and of dense scans rays by chance.
 
     Parameters
     ----------
@@ -77,7 +78,8 @@ def read_rays(
     scan_ids = _thin(registered.scan_ids, _MOST_SCANS)
     rows = np.searchsorted(registered.scan_ids, scan_ids)
     most = _MOST_RAYS // len(scan_ids)
-    floor_m, height_m = (0.0, np.inf) if store.planar else plan.storey_m
+    planar = store.planar or not np.isfinite(plan.floor_z_m)
+    floor_m, height_m = (0.0, np.inf) if planar else plan.storey_m
     high_m = height_m - _OPEN_M if plan.height_from == "ceiling" else np.inf
 
     def moved_m(xyz_m: FloatArray) -> FloatArray:
@@ -87,7 +89,7 @@ def read_rays(
         for scan_id, xyz_m in store.scans(scan_ids):
             placed_m = moved_m(xyz_m.astype(float))
             is_wanted = (placed_m[:, 2] > SKIRTING_M) & (placed_m[:, 2] < high_m)
-            placed_m = placed_m if store.planar else placed_m[is_wanted]
+            placed_m = placed_m if planar else placed_m[is_wanted]
             if len(placed_m) > most:
                 # by chance: every second of sixteen beams would be always the same ones
                 random = np.random.default_rng(scan_id)
@@ -96,8 +98,8 @@ def read_rays(
 
     sensors_m = moved_m(registered.map_from_sensor[rows, :3, 3])
     places_m = dict(zip(scan_ids.tolist(), sensors_m, strict=True))
-    rays = gather_rays(thinned(), places_m, planar=store.planar)
-    return replace(rays, floor_z_m=np.nan if store.planar else 0.0)
+    rays = gather_rays(thinned(), places_m, planar=planar)
+    return replace(rays, floor_z_m=np.nan if planar else 0.0)
 
 
 def _thin(values: IntArray, most: int) -> IntArray:
