@@ -1,6 +1,7 @@
 """Two surveys of a floor: frames, walls, openings, rooms and furniture, in a floor on paper."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,6 +231,15 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
         assert ray_cells.compare_looks(planar, seen).is_passed.tolist() == [is_gone]
 
 
+def test_rays_of_unknown_heights_deny_nothing_that_a_planar_scanner_saw():
+    planar, all_over = looks([[7]], [[0]]), looks([[0]], [[30]])
+    assert ray_cells.compare_looks(planar, all_over).is_passed.all()
+    of_any_height = replace(all_over, is_mixed=True)
+    assert not ray_cells.compare_looks(planar, of_any_height).is_passed.any()
+    # of what it saw itself it knows as little, and as much
+    assert ray_cells.compare_looks(replace(planar, is_mixed=True), of_any_height).is_passed.all()
+
+
 @given(st.integers(0, 9), st.integers(0, 9))
 def test_each_place_more_that_shows_a_change_makes_it_likelier(n_for, n_against):
     p = verdicts.rate_places(n_for, n_against)
@@ -250,6 +260,16 @@ def test_the_table_keeps_all_and_states_the_motion(tmp_path):
     yaw_rad, x_m, y_m = json.loads(tables.read_note(path, schemas.CHANGES, "motion"))
     assert (np.degrees(yaw_rad), x_m, y_m) == pytest.approx((40, 3.0, 0.5), abs=0.02)
     assert sum(read["likely"]) == sum(c.is_change for c in found.changes) > 0
+
+
+def test_floors_without_walls_or_rays_have_a_table_without_rows(tmp_path):
+    path = tmp_path / "changes.parquet"
+    tables.write_table(path, schemas.CHANGES, change_table.tabulate_changes([]), allow_empty=True)
+    assert len(tables.read_table(path, schemas.CHANGES, allow_empty=True)["p"]) == 0
+    a, blind = survey(), survey()
+    none = replace(blind.rays, xyz_m=np.empty((0, 3)), azimuth_rad=np.empty(0))
+    object.__setattr__(blind, "rays", replace(none, first=np.zeros_like(blind.rays.first)))
+    assert [c for c in compare(a, blind) if c.verdict in verdicts.CHANGES] == []
 
 
 def test_what_is_compared_is_each_with_the_one_before():

@@ -39,12 +39,15 @@ class Looks:
         Cell, row and place of each ray that goes through.
     ending : (m, 3) int64
         Likewise of those that end there.
+    is_mixed : bool
+        Whether rays are of many heights, of which none is known.
     """
 
     hits: IntArray
     passes: IntArray
     passing: IntArray
     ending: IntArray
+    is_mixed: bool = False
 
     @property
     def is_flat(self) -> bool:
@@ -89,7 +92,16 @@ def look_at(rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float
     ending = told[is_near & (np.abs(face.behind_m) <= at_m)]
     passing = told[is_near & (face.behind_m > half_m + BEHIND_M + _AT_M)]
     shape = (n_cells, _count_rows(rays))
-    return Looks(_count(ending, shape), _count(passing, shape), passing, ending)
+    is_mixed = rays.planar and _spread_m(rays) > _ROW_M
+    return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed)
+
+
+def _spread_m(rays: RaySet) -> float:
+    """Return how far apart most returns are in height."""
+    if not len(rays.xyz_m):
+        return 0.0
+    low_m, high_m = np.percentile(rays.xyz_m[:: max(len(rays.xyz_m) // 1000, 1), 2], (5, 95))
+    return float(high_m - low_m)
 
 
 def _number_rows(height_m: FloatArray, *, planar: bool) -> IntArray:
@@ -218,6 +230,9 @@ def compare_looks(first: Looks, other: Looks) -> Later:
     if first.is_flat and not other.is_flat:
         is_denied = ((hits >= FEW) & (hits > passes)).any(axis=1) | (passes[:, _LOW_ROW] < FEW)
         solid = np.repeat(solid, other.hits.shape[1], axis=1)
+    elif first.is_flat and other.is_mixed and not first.is_mixed:
+        # it may have looked over all that a planar scanner saw
+        is_denied[:] = True
     elif other.is_flat and not first.is_flat:
         looked_at = first.hits + first.passes > 0
         is_so_everywhere = np.all(solid | ~looked_at, axis=1) & np.any(solid, axis=1)
