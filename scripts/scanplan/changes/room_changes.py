@@ -1,7 +1,7 @@
 """Rooms and furniture of two surveys compared."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -32,7 +32,9 @@ _TOUCH_M = (
 )
 _CHANGED_SHARE = 0.01  # of a room's area, beside a wall that has changed: 5 cm of a room of 5 m
 _IN_PLACE = 0.3  # intersection over union of two outlines of one piece, each seen in part
-_PASSED = 0.5  # of the cells across a piece that rays go through where it stood
+_SIDE_M = 0.1  # that a side of a piece is rough by
+_LEAST_SIDE_M = 0.3  # of a side: three cells
+_PASSED = 0.5  # of the cells of its sides that rays go through where it stood
 _HIT = 0.3  # of those that rays end at
 _AS_LARGE = 0.6  # the smaller area of the larger: one piece, seen from other sides
 _CARRIED_M = 3.0  # farther away it may as well be another
@@ -135,7 +137,8 @@ def compare_furniture(a: Survey, b: Survey) -> list[Change]:
     lone_b = [j for j in range(len(shapes_b)) if j not in {j for _, j in pairs}]
     gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in lone_a]
     new = [_turn_round(_judge_piece(int(numbers_b[j]), shapes_b[j], b, a)) for j in lone_b]
-    return [*found, *_join_moved(gone, new)]
+    walls = overlays.unite_areas([a.place(body) for body in a.plan.bodies])
+    return [*found, *_join_moved(gone, new, walls)]
 
 
 def _list_pieces(survey: Survey) -> tuple[Array, IntArray]:
@@ -148,27 +151,39 @@ def _list_pieces(survey: Survey) -> tuple[Array, IntArray]:
 
 
 def _judge_piece(number: int, shape: BaseGeometry, of: Survey, by: Survey) -> Change:
-    """Return what another survey shows of a piece, along the middle of its outline."""
-    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
-    if len(corners_m) < 4:
-        return Change("furniture", number, -1, NOT_SEEN, math.nan, shape)
-    edges_m = np.hypot(*np.diff(corners_m[:3], axis=0).T)
-    order = [0, 1, 2, 3] if edges_m[0] >= edges_m[1] else [1, 2, 3, 0]
-    first, second, third, fourth = corners_m[order]
-    ends_m = np.array([(first + fourth) / 2, (second + third) / 2])
-    line, length_m = ray_cells.line_between(ends_m)
-    looks = [ray_cells.look_at(s.rays, line, (0.0, length_m), edges_m.min() / 2) for s in (of, by)]
-    later = ray_cells.compare_looks(*looks)
-    n_passing, n_ending = later.count_places(np.ones(len(later.is_passed), bool))
-    p = verdicts.rate_places(n_passing, n_ending, _MOVES)
-    if np.mean(later.is_passed) >= _PASSED and p > 0.5:
+    """Return what another survey shows of a piece, along the sides of its outline."""
+    n_solid, n_passed, n_hit = 0, 0, 0
+    most = (0, 0)
+    for ends_m in _list_sides(shape):
+        line, length_m = ray_cells.line_between(ends_m)
+        own, other = (
+            ray_cells.look_at(s.rays, line, (0.0, length_m), _SIDE_M / 2) for s in (of, by)
+        )
+        later = ray_cells.compare_looks(own, other)
+        is_solid = own.solid.sum(axis=1) > 0
+        n_solid += int(is_solid.sum())
+        n_passed += int((later.is_passed & is_solid).sum())
+        n_hit += int((later.is_hit & is_solid).sum())
+        most = max(most, later.count_places(is_solid))
+    p = verdicts.rate_places(*most, _MOVES)
+    if n_solid and n_passed >= _PASSED * n_solid and p > 1 / 2:
         return Change("furniture", number, -1, GONE, p, shape)
-    if np.mean(later.is_hit) >= _HIT:
+    if n_solid and n_hit >= _HIT * n_solid:
         return Change("furniture", number, -1, SAME, 1 - p, shape)
     return Change("furniture", number, -1, NOT_SEEN, math.nan, shape)
 
 
-def _join_moved(gone: list[Change], new: list[Change]) -> list[Change]:
+def _list_sides(shape: BaseGeometry) -> Iterator[FloatArray]:
+    """Yield the sides (2, 2) of an outline that are long enough to look at."""
+    simple = overlays.simplify_shapes(shape, _SIDE_M)
+    for part in shapely.get_parts(simple):
+        corners_m = shapely.get_coordinates(shapely.get_exterior_ring(part))
+        for ends_m in np.stack([corners_m[:-1], corners_m[1:]], axis=1):
+            if np.hypot(*(ends_m[1] - ends_m[0])) >= _LEAST_SIDE_M:
+                yield ends_m
+
+
+def _join_moved(gone: list[Change], new: list[Change], walls: BaseGeometry) -> list[Change]:
     """Return changes of furniture, what is gone here and new nearby as one piece that moved."""
     closeness = np.zeros((len(gone), len(new)))
     for i, old in enumerate(gone):
@@ -176,6 +191,9 @@ def _join_moved(gone: list[Change], new: list[Change]) -> list[Change]:
             areas = sorted([old.shape.area, other.shape.area])
             apart_m = old.shape.centroid.distance(other.shape.centroid)
             is_one = old.verdict == GONE and other.verdict == NEW
+            # nobody carries it through a wall
+            way = shapely.LineString([old.shape.centroid, other.shape.centroid])
+            is_one &= not way.intersects(walls)
             if is_one and apart_m <= _CARRIED_M and areas[0] >= _AS_LARGE * areas[1]:
                 closeness[i, j] = 1 - apart_m / (2 * _CARRIED_M)
     pairs = _pair_most(closeness, 0.0)
