@@ -11,6 +11,7 @@ from scanplan.types import FloatArray
 
 _REACHES_M = (1.0, 0.5, 0.3, 0.3, 0.3)
 """How far faces may be apart, round by round: first what votes are off by over a building."""
+_BENT_M = 0.6  # what a map may be bent by, and walls may have moved by: both are told by as much
 _ROUNDS = 6  # of weights at each reach
 _TURN_RAD = np.radians(6)  # of faces against each other: short ones, and what votes are off by
 _LEAST_M = 0.3  # side by side: less tells no direction
@@ -51,6 +52,12 @@ class FrameFit:
     scatter_m: float
     matched_m: float
 
+    @property
+    def near_m(self) -> float:
+        """Length of faces that agree, or are as near as those that the motion was fitted to."""
+        is_near = np.abs(self.pairs.shift_m) <= _REACHES_M[-1]
+        return float(self.pairs.length_m[is_near].sum())
+
     def sigmas_m(self, points_m: FloatArray, normals: FloatArray) -> FloatArray:
         """Return how far the motion may be off at points (n, 2) along normals (n, 2)."""
         rows = _change_of(points_m - self.centre_m, normals)
@@ -89,7 +96,7 @@ def _pair(a: SeenFaces, moved: SeenFaces, reach_m: float) -> FacePairs:
 
 def _conclude(a: SeenFaces, b: SeenFaces, motion: PlaneMotion, centre_m: FloatArray) -> FrameFit:
     moved = b.moved(motion)
-    near = _pair(a, moved, _REACHES_M[-1])
+    near = _pair(a, moved, _BENT_M)
     pairs = keep_nearest(near, len(a.length_m), len(b.length_m))
     rows, off_m, weight = _measure(a, moved, pairs, centre_m)
     if not len(off_m):

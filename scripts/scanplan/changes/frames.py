@@ -99,7 +99,7 @@ def tie_frames(
 
 def _favour_m(fit: FrameFit) -> float:
     """Return the length of faces that speaks for a motion: of what has moved a little, half."""
-    return (fit.matched_m + float(fit.pairs.length_m.sum())) / 2
+    return (fit.matched_m + fit.near_m) / 2
 
 
 def _check_fit(pair: str, fit: FrameFit, share: float) -> None:
