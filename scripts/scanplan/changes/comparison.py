@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from scanplan.changes import face_shifts, frames, opening_changes, room_changes, wall_changes
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.ray_cells import AT_M
 from scanplan.changes.seen_faces import list_seen_faces
 from scanplan.changes.surveys import Survey, find_free_floor, read_rays
-from scanplan.changes.verdicts import Change
+from scanplan.changes.verdicts import SIGMAS, Change
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.store.tables import ScanStore
@@ -51,8 +52,9 @@ def compare_surveys(plans: tuple[FloorPlan, FloorPlan], scans: tuple[Scans, Scan
         (first.name, second.name),
     )
     motions = (PlaneMotion(), tie.fit.motion)
+    slack_m = max(AT_M, SIGMAS * tie.fit.scatter_m)
     a, b = (
-        Survey(plan, read_rays(*of, plan, motion), motion)
+        Survey(plan, read_rays(*of, plan, motion), motion, slack_m)
         for plan, of, motion in zip(plans, scans, motions, strict=True)
     )
     shifts = face_shifts.measure_shifts(a, b, tie.fit)

@@ -149,7 +149,7 @@ def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
     is_wider = (shift_m < 0) == (old_m == 0.0)
     span_m = (min(old_m, new_m), max(old_m, new_m))
     first, second = (a, b) if is_wider else (b, a)
-    looks = [ray_cells.look_at(s.rays, one.line, span_m, one.half_m) for s in (first, second)]
+    looks = [s.look_at(one.line, span_m, one.half_m) for s in (first, second)]
     later = ray_cells.compare_looks(*looks)
     p = verdicts.rate_places(*later.count_places(later.is_passed))
     if np.mean(later.is_passed) < _PASSED or p < 1 / 2:
@@ -168,9 +168,7 @@ def _compare_kinds(kind: str, other: str) -> str:
 def _judge_alone(opening: _Opening, of: Survey, by: Survey) -> Change:
     """Return what another survey shows of an opening that it has not drawn."""
     inner_m = (END_M, max(opening.width_m - END_M, END_M + ray_cells.CELL_M))
-    own, other = (
-        ray_cells.look_at(s.rays, opening.line, inner_m, opening.half_m) for s in (of, by)
-    )
+    own, other = (s.look_at(opening.line, inner_m, opening.half_m) for s in (of, by))
     shape = shapely.LineString(opening.ends_m)
 
     def tell(verdict: str, p: float, doubt: str = "") -> Change:

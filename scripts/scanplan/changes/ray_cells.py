@@ -17,11 +17,12 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 from scanplan.validation.clustered_shares import number_places
 
 CELL_M = 0.1  # along: a few rays of each scan
+AT_M = 0.1
+"""Before and behind a wall's sides: what poses, ranges and two straight maps err by."""
 _ROW_M = 0.25  # up: between two beams of 2 degrees at 7 m
 _ROWS = 12  # up to 3 m
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
-_AT_M = 0.1  # before and behind a wall's sides: what poses, ranges and two maps err by
 _HIGHEST_M = 2.0  # above the floor: lintels, and what planar scanners are mounted below
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
@@ -63,7 +64,9 @@ class Looks:
         return is_hit | (is_above & is_below & (self.passes + self.hits == 0))
 
 
-def look_at(rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
+def look_at(
+    rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float, slack_m: float
+) -> Looks:
     """Return what rays show of a stretch of wall.
 
     Parameters
@@ -74,11 +77,13 @@ def look_at(rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float
         From where to where along it.
     half_m : float
         Half of its thickness.
+    slack_m : float
+        Before and behind its sides, what poses, ranges and two maps err by.
     """
     low_m, high_m = span_m
     n_cells = count_cells(span_m)
     half_m = min(half_m, _THICKEST_M / 2)
-    at_m = half_m + _AT_M
+    at_m = half_m + slack_m
     face = cast_at_face(rays, line, low_m, high_m, at_m=at_m, occluded_within_m=0.0)
     views = face.views
     across_m = np.abs(views.side_m)[face.view]
@@ -90,7 +95,7 @@ def look_at(rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float
     places = number_places(rays.sensors_m[:, :2], _PLACE_M)[face.scan]
     told = np.column_stack([cell, row, places])
     ending = told[is_near & (np.abs(face.behind_m) <= at_m)]
-    passing = told[is_near & (face.behind_m > half_m + BEHIND_M + _AT_M)]
+    passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
     shape = (n_cells, _count_rows(rays))
     is_mixed = rays.planar and _spread_m(rays) > _ROW_M
     return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed)

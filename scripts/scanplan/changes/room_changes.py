@@ -156,9 +156,7 @@ def _judge_piece(number: int, shape: BaseGeometry, of: Survey, by: Survey) -> Ch
     most = (0, 0)
     for ends_m in _list_sides(shape):
         line, length_m = ray_cells.line_between(ends_m)
-        own, other = (
-            ray_cells.look_at(s.rays, line, (0.0, length_m), _SIDE_M / 2) for s in (of, by)
-        )
+        own, other = (s.look_at(line, (0.0, length_m), _SIDE_M / 2) for s in (of, by))
         later = ray_cells.compare_looks(own, other)
         is_solid = own.solid.sum(axis=1) > 0
         n_solid += int(is_solid.sum())

@@ -9,8 +9,10 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.ray_cells import AT_M, Looks, look_at
 from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
 from scanplan.geometry import overlays
+from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.rays.tolerances import SKIRTING_M
@@ -35,11 +37,14 @@ class Survey:
         In the frame that `motion` leads to, heights above the floor.
     motion : PlaneMotion
         From its own frame to the common one.
+    slack_m : float
+        What rays are off by at walls, see `ray_cells.look_at`.
     """
 
     plan: FloorPlan
     rays: RaySet
     motion: PlaneMotion
+    slack_m: float = AT_M
 
     @cached_property
     def faces(self) -> SeenFaces:
@@ -50,6 +55,10 @@ class Survey:
     def free(self) -> BaseGeometry:
         """The floor that rays went over, in the common frame."""
         return self.place(find_free_floor(self.plan))
+
+    def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
+        """Return what its rays show of a stretch of wall, see `ray_cells.look_at`."""
+        return look_at(self.rays, line, span_m, half_m, self.slack_m)
 
     def place(self, shape: BaseGeometry) -> BaseGeometry:
         """Return a shape of the plan in the common frame."""
