@@ -1,7 +1,7 @@
 """Sheets of paper: their sizes, the scale of a plan on one, and where things go on it."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,16 +14,19 @@ from scanplan.exports.sheet.styles import Paper
 from scanplan.types import FloatArray
 
 SIZES_MM = {
-    "A4": (297.0, 210.0),
     "A3": (420.0, 297.0),
+    "A4": (297.0, 210.0),
     "A2": (594.0, 420.0),
     "A1": (841.0, 594.0),
     "A0": (1189.0, 841.0),
 }
-"""Of sheets (ISO 216), the smallest first."""
-LARGEST = {50: "A3", 100: "A1"}
-"""The largest sheet at a scale: a house is read on a desk, a floor on a plotter; others: A0."""
-_SCALES = (50, *(m * 10**e for e in range(2, 6) for m in (1, 2, 5)))  # ISO 5455, of buildings
+"""Of sheets (ISO 216): A3, which most printers have and folders hold, then the smallest first."""
+_SMALL = ("A3", "A4")
+# ISO 5455, of buildings, and those that architects' rules have between them
+_USUAL = (50, 75, 100, 125, 150, 200, 250)
+_SCALES = (*_USUAL, *(m * 10**e for e in range(2, 5) for m in (5, 10, 20)), 500_000)
+_READABLE = 200  # a room of 3 m is 15 mm wide: a name in the smallest letters goes into it
+_ENOUGH = 0.55  # of the room for a plan: less looks lost, more is rare between two scales
 TITLE_ROWS = 9  # of the title block
 
 
@@ -125,9 +128,11 @@ def choose_page(
 ) -> Page:
     """Choose the sheet and the scale for a plan.
 
-    The largest of the usual scales at which it fits on a sheet, then the smallest sheet: at 1:50
-    up to A3, at 1:100 up to A1, at others up to A0. Tables are broken off a row or two alone only
-    where the sheet would otherwise be larger.
+    Every sheet, lying or upright, has the largest of the usual scales at which it holds the plan.
+    Of A3 and A4 the first is taken whose room the plan fills well enough, else that which it fills
+    best. Larger sheets are taken where rooms would be too small on these for words to go into them,
+    and ever smaller scales where they are on all. Tables are broken off a row or two alone only
+    where the scale would otherwise be smaller.
 
     Parameters
     ----------
@@ -140,26 +145,58 @@ def choose_page(
     """
     extent_m = np.asarray(high_m, float) - low_m
     middle_m = (np.asarray(high_m, float) + low_m) / 2
+    scales = [scale for scale in _SCALES if scale >= least_scale]
+    pages = [
+        page
+        for name in SIZES_MM
+        if (page := _fit_sheet(name, scales, turn_deg, extent_m, middle_m, blocks)) is not None
+    ]
+    for readable in (_READABLE, *scales):
+        found = [page for page in pages if page.scale <= readable]
+        small = [page for page in found if page.name in _SMALL]
+        good = [page for page in small or found if _fills(page, extent_m) >= _ENOUGH]
+        if found:
+            best = max(small or found[:1], key=lambda page: _fills(page, extent_m))
+            return good[0] if good else best
     largest = list(SIZES_MM)[-1]
-    for scale in [scale for scale in _SCALES if scale >= least_scale]:
-        for name, (long, short) in SIZES_MM.items():
-            for size in ((long, short), (short, long)):
-                empty = Page(name, size, scale, 0, turn_deg, middle_m)
-                # three rows under a head are a table, fewer look forgotten
-                for least in (3, 1):
-                    page = _fill_page(empty, blocks, least)
-                    if page is not None and _holds(page, extent_m):
-                        return page
-            if name == LARGEST.get(scale, largest):
-                break
     size = SIZES_MM[largest]
     page = _fill_page(Page(largest, size, _SCALES[-1], 0, turn_deg, middle_m), blocks)
     if page is None:
         raise ValueError(f"tables of {sum(blocks)} rows are more than a sheet holds")
-    x0, y0, x1, y1 = page.drawing_mm
-    room_mm = np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
-    scale = math.ceil(float((1000 * extent_m / room_mm).max()))
+    scale = math.ceil(float((1000 * extent_m / _room_mm(page)).max()))
     return Page(largest, size, scale, page.rows, turn_deg, middle_m)
+
+
+def _fit_sheet(
+    name: str,
+    scales: Sequence[int],
+    turn_deg: float,
+    extent_m: FloatArray,
+    middle_m: FloatArray,
+    blocks: list[int],
+) -> Page | None:
+    """Return a sheet at the largest scale at which it holds a plan; None if there is none."""
+    long, short = SIZES_MM[name]
+    for scale in scales:
+        for size in ((long, short), (short, long)):
+            empty = Page(name, size, scale, 0, turn_deg, middle_m)
+            # three rows under a head are a table, fewer look forgotten
+            for least in (3, 1):
+                page = _fill_page(empty, blocks, least)
+                if page is not None and _holds(page, extent_m):
+                    return page
+    return None
+
+
+def _fills(page: Page, extent_m: FloatArray) -> float:
+    """Return how much of the room that a page has for a plan it takes."""
+    return float(np.prod(extent_m * page.mm_per_m) / np.prod(_room_mm(page)))
+
+
+def _room_mm(page: Page) -> FloatArray:
+    """Return width and height that a plan may have on a page, its dimensions around it."""
+    x0, y0, x1, y1 = page.drawing_mm
+    return np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
 
 
 def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
@@ -210,6 +247,4 @@ def fill_slots(slots: Iterator[Slot], blocks: list[int]) -> list[list[Slot]] | N
 
 
 def _holds(page: Page, extent_m: FloatArray) -> bool:
-    x0, y0, x1, y1 = page.drawing_mm
-    room_mm = np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
-    return bool((extent_m * page.mm_per_m <= room_mm).all())
+    return bool((extent_m * page.mm_per_m <= _room_mm(page)).all())
