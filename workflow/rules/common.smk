@@ -438,8 +438,8 @@ def exported_files(formats):
 
 def files_unasked_for(wildcards):
     """The files of formats that are not chosen for the job's dataset."""
-    others = set(export_formats.FILES) - set(formats_of(wildcards.dataset))
-    files = export_formats.list_files(sorted(others)).values()
+    chosen = DATASETS[wildcards.dataset].settings["plan"]["export"]["formats"]
+    files = export_formats.list_replaced(chosen)
     return [f"results/{wildcards.dataset}/{file}" for file in files]
 
 

@@ -166,6 +166,38 @@ rule export_plan:
         "../../scripts/export_plan.py"
 
 
+rule export_presentation:
+    """Write the plan as a regular drawing with solid walls, and what was changed for it."""
+    input:
+        faces=plan_table("faces"),
+        walls=plan_table("walls"),
+        openings=plan_table("openings"),
+        rooms=plan_table("rooms"),
+        evidence=plan_table("evidence"),
+        free=plan_table("free"),
+        furniture=plan_table("furniture"),
+        confidence=if_kept("results/{dataset}/plan/confidence.parquet"),
+    output:
+        svg="results/{dataset}/plan/presentation.svg",
+        pdf="results/{dataset}/plan/presentation.pdf",
+        png="results/{dataset}/plan/presentation.png",
+        dxf="results/{dataset}/plan/presentation.dxf",
+        walls="results/{dataset}/plan/presentation.parquet",
+    log:
+        "logs/{dataset}/export_presentation.log",
+    benchmark:
+        "benchmarks/{dataset}/export_presentation.tsv"
+    threads: 1
+    resources:
+        mem_mb=grown(mem_mb=1500),
+        runtime=grown(runtime=10),
+    params:
+        code=code_of("export_presentation"),
+        settings=setting(stage_settings.select_presentation),
+    script:
+        "../../scripts/export_presentation.py"
+
+
 # a rule for every choice of formats, as the files of a rule are the same for all datasets
 for number, formats in enumerate(chosen_formats()):
 

@@ -25,7 +25,7 @@ from scanplan.exports.sheet.symbols import block_scales, choose_block, symbol_an
 from scanplan.exports.sheet.title import TITLE_TAG
 from scanplan.types import FloatArray
 
-_HATCHES = {"wall": "SOLID", "assumed": "ANSI31", "scale-bar": "SOLID"}
+_HATCHES = {"wall": "SOLID", "poche": "SOLID", "assumed": "ANSI31", "scale-bar": "SOLID"}
 _ALIGNMENTS = {
     0.0: TextEntityAlignment.MIDDLE_LEFT,
     0.5: TextEntityAlignment.MIDDLE_CENTER,

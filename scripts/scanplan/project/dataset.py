@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import (
+    catalogue_file,
     corrections_file,
     dataset_files,
     dataset_list,
@@ -186,6 +187,9 @@ def describe_dataset(
         settings = settings_of_dataset(defaults, layers, schema)
     else:
         settings = dict(usual)
+    export = settings["plan"]["export"]
+    if export["catalogue"] is not None:
+        catalogue_file.read_catalogue(export["catalogue"])
     if path is None or dataset_files.is_survey_file(path):
         _check_survey(path, own)
         found = describe_simulated(name, settings, drawings)

@@ -19,6 +19,13 @@ FILES = {
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
 }
 """What the stage `export_files` writes of each format, by what it is."""
+PRESENTATION = {
+    "presentation": {
+        **{suffix: f"plan/presentation.{suffix}" for suffix in ("svg", "pdf", "png", "dxf")},
+        "walls": "plan/presentation.parquet",
+    }
+}
+"""The same of the stage `export_presentation`."""
 CLOUD = ("laz", "cloud.laz")
 """The format and the file of the stage `export_cloud`."""
 
@@ -41,6 +48,12 @@ def tell_lacking() -> list[str]:
     ]
 
 
+def list_replaced(formats: Iterable[str]) -> list[str]:
+    """Return the files of formats that are not chosen, of an earlier choice, below the same."""
+    others = sorted({*FILES, *PRESENTATION} - set(formats))
+    return [file for name in others for file in (FILES | PRESENTATION)[name].values()]
+
+
 def list_files(formats: Iterable[str]) -> dict[str, str]:
     """Return the files of `export_files` below results/<dataset>/, by what they are."""
     return {what: file for name in formats if name in FILES for what, file in FILES[name].items()}
@@ -50,4 +63,5 @@ def list_exports(formats: Iterable[str]) -> list[str]:
     """Return all files of some formats, below results/<dataset>/."""
     asked = list(formats)
     laz, cloud = CLOUD
-    return [*list_files(asked).values(), *([cloud] if laz in asked else [])]
+    drawn = [file for name in PRESENTATION if name in asked for file in PRESENTATION[name].values()]
+    return [*list_files(asked).values(), *drawn, *([cloud] if laz in asked else [])]

@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
+from scanplan.project import catalogue_file
 from scanplan.project.settings import merge_settings
 from scanplan.project.settings_schema import ADVANCED
 
@@ -37,7 +38,8 @@ _THESIS = {
 """What the thesis's extractors go by: no gap, furniture or height."""
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew", "max_damaged_share")
 _ASSUMED = ("assumed_thickness_m", "assumed_height_m")
-_OF_FILES = ("formats", "author", "organisation", "site", "cloud")
+_OF_PRESENTATION = ("catalogue", "max_change_m")
+_OF_FILES = ("formats", "author", "organisation", "site", "cloud", *_OF_PRESENTATION)
 """What the drawings do not depend on."""
 _MOST_CHUNKS = 1000
 """Jobs of one stage: a recording of 4,000 GB has as many by default, and no cluster more nodes."""
@@ -163,6 +165,23 @@ def select_plan(settings: Settings) -> Keywords:
 def select_drawing(settings: Settings) -> Keywords:
     """Return the settings of `export_plan`."""
     return _without(select_section(settings, "plan", "export"), _OF_FILES)
+
+
+def select_presentation(settings: Settings) -> Keywords:
+    """Return the settings of `export_presentation`: what its catalogue holds, not its name.
+
+    Raises
+    ------
+    StageError
+        If the catalogue is missing or wrong.
+    """
+    export = select_section(settings, "plan", "export")
+    own = {
+        "north_deg": export["site"]["north_deg"],
+        "catalogue": catalogue_file.read_catalogue(export["catalogue"]),
+        "max_change_m": export["max_change_m"],
+    }
+    return _without(select_drawing(settings), ("map_cell_m",)) | own
 
 
 def select_files(settings: Settings) -> Keywords:

@@ -359,6 +359,23 @@ EVIDENCE = Schema(
     ("wall", "scan_id"),
 )
 """Which scans show a wall of the plan, when they were taken and with how many points."""
+PRESENTATION = Schema(
+    "presentation",
+    1,
+    {
+        "wall": "int32",
+        **_CENTRELINE,
+        "thickness_m": "float64",
+        "thickness_from": "string",
+        **dict.fromkeys(("moved_m", "turned_deg", "thickness_changed_m"), "float64"),
+    },
+    ("wall",),
+)
+"""Walls of the regular plan, and what was changed of them.
+
+`thickness_from` is measured or assumed; lines are in the middle of walls. `moved_m` is the greatest
+distance that a side was moved by at an end.
+"""
 ELEMENT_IDS = Schema(
     "element_ids",
     1,

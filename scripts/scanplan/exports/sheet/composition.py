@@ -1,6 +1,6 @@
 """The sheet of a plan, put together: what SVG, PDF, PNG and DXF render."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -54,6 +54,59 @@ class Sheet:
     paper_words: list[Word] = field(repr=False)
 
 
+@dataclass(frozen=True)
+class Shown:
+    """What a sheet shows of a plan.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+        Whose rooms are stamped and dimensioned.
+    titled : FloorPlan
+        Whose contents, doubts and accuracy the title block states: as measured.
+    marks, symbols : lists
+        Map frame.
+    uncertain : shapely geometry
+        Lengths that end there are about so long.
+    built : shapely geometry
+        What chains of dimensions run along, beside rooms that are closed.
+    spans_m : (m, 2, 2) float
+        Of openings, where chains measure them.
+    known : shapely geometry or None
+        What of the building ends where it is known to; None of all that is dimensioned.
+    beside : sequence of shapely geometries
+        What else chains of dimensions keep off.
+    is_labelled : bool
+        Whether widths of openings, heights of walls and doubts stand beside them.
+    notes : sequence of str
+        Lines of words that stand beside the legend.
+    """
+
+    plan: FloorPlan
+    titled: FloorPlan
+    marks: list[Mark] = field(repr=False)
+    symbols: list[Symbol] = field(repr=False)
+    uncertain: BaseGeometry
+    built: BaseGeometry
+    spans_m: FloatArray
+    known: BaseGeometry | None
+    beside: Sequence[BaseGeometry] = ()
+    is_labelled: bool = True
+    notes: Sequence[str] = ()
+
+
+def show_measured(plan: FloorPlan) -> Shown:
+    """Return what a sheet shows of a plan as it was measured, with all doubts."""
+    marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
+    marks += content.draw_furniture(plan)
+    symbols = content.list_symbols(plan)
+    spans_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
+    half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
+    built = overlays.unite_areas([*plan.bodies, *floorplan.buffer_lines(spans_m, half_m)])
+    known = overlays.unite_areas(plan.known_bodies)
+    return Shown(plan, plan, marks, symbols, _find_uncertain(plan), built, spans_m, known)
+
+
 def compose_sheet(
     plan: FloorPlan,
     facts: SheetFacts | None = None,
@@ -61,7 +114,18 @@ def compose_sheet(
     turn_deg: float | None = None,
     least_scale: int = 1,
 ) -> Sheet:
-    """Compose the sheet of a plan.
+    """Compose the sheet of a plan as it was measured; see `lay_out`."""
+    return lay_out(show_measured(plan), facts, turn_deg=turn_deg, least_scale=least_scale)
+
+
+def lay_out(
+    shown: Shown,
+    facts: SheetFacts | None = None,
+    *,
+    turn_deg: float | None = None,
+    least_scale: int = 1,
+) -> Sheet:
+    """Lay a drawing out on a sheet, with dimensions, words and tables.
 
     Parameters
     ----------
@@ -74,12 +138,9 @@ def compose_sheet(
         Least denominator of its scale, as of the other sheets of a set.
     """
     facts = facts or SheetFacts()
-    marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
-    marks += content.draw_furniture(plan)
-    symbols = content.list_symbols(plan)
-    uncertain = _find_uncertain(plan)
+    plan, marks, symbols = shown.plan, shown.marks, shown.symbols
     # the scale bar with the axes takes six rows
-    blocks = [6, len(_list_legend(plan, marks, symbols, uncertain)), len(plan.areas)]
+    blocks = [6, len(_list_legend(shown, marks)), len(shown.notes), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     page = choose_page(*extent, turn_deg, blocks, least_scale)
@@ -88,31 +149,37 @@ def compose_sheet(
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
-    legend = _list_legend(plan, marks, symbols, uncertain)
+    legend = _list_legend(shown, marks)
     blocks[1] = len(legend)
-    bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
+    bar, legend_slots, note_slots, table_slots = fill_slots(page.slots(), blocks) or (
+        [],
+        [],
+        [],
+        [],
+    )
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
-        *title.draw_title_block(page, plan, facts),
-        *title.draw_scale_bar(page, bar[0]),
+        *title.draw_title_block(page, shown.titled, facts),
+        *title.draw_scale_bar(page, bar[0], facts.north_deg),
         *title.draw_legend(legend, legend_slots),
+        *title.draw_notes(shown.notes, note_slots),
     ]
     marks += content.draw_corrections(plan, _apart_m(page))
     space = _open_space(page, marks, symbols)
-    stamps = words.stamp_rooms(page, plan, space)
+    stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
     beside += title.draw_room_table(stamps, table_slots)
-    on_paper = page.place_shape(uncertain)
-    drawn = _dimension(page, plan, marks, symbols, on_paper, space)
+    on_paper = page.place_shape(shown.uncertain)
+    drawn = _dimension(page, shown, marks, on_paper, space)
     is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas
         for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
     ]
-    labels = [
-        *words.label_openings(page, symbols, is_stated, space),
-        *words.label_walls(page, plan, space),
-    ]
+    labels: list[Word] = []
+    if shown.is_labelled:
+        labels += words.label_openings(page, symbols, is_stated, space)
+        labels += words.label_walls(page, plan, space)
     return Sheet(
         clean_text(plan.name),
         page,
@@ -127,16 +194,15 @@ def compose_sheet(
     )
 
 
-def _list_legend(
-    plan: FloorPlan, marks: list[Mark], symbols: list[Symbol], uncertain: BaseGeometry
-) -> list[str]:
-    kinds = {symbol.kind for symbol in symbols}
-    if list_doubts(plan):
+def _list_legend(shown: Shown, marks: list[Mark]) -> list[str]:
+    plan = shown.plan
+    kinds = {symbol.kind for symbol in shown.symbols}
+    if shown.is_labelled and list_doubts(plan):
         kinds.add("verify")
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
-    if not (plan.assumed.is_empty and uncertain.is_empty):
+    if not (plan.assumed.is_empty and shown.uncertain.is_empty):
         kinds.add("dimension")
     return title.list_legend(marks, kinds)
 
@@ -162,7 +228,7 @@ def _drop_specks(page: Page, marks: list[Mark]) -> list[Mark]:
 
 def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSpace:
     """Return the part of the sheet above the tables, with what words keep off."""
-    solid = {"wall", "inferred", "low", "assumed", "column"}
+    solid = {"wall", "poche", "inferred", "low", "assumed", "column"}
     walls = [
         polygon for mark in marks if mark.kind in solid for polygon in _rings(page, mark.paths)
     ]
@@ -189,22 +255,15 @@ def _rings(page: Page, paths: list[FloatArray]) -> list[BaseGeometry]:
 
 
 def _dimension(
-    page: Page,
-    plan: FloorPlan,
-    marks: list[Mark],
-    symbols: list[Symbol],
-    uncertain: BaseGeometry,
-    space: LabelSpace,
+    page: Page, shown: Shown, marks: list[Mark], uncertain: BaseGeometry, space: LabelSpace
 ) -> list[Dimension]:
     """Return the chains along the facades of the building, off all that is drawn.
 
     That is walls, openings and the rooms that these close; surfaces where there is no wall.
     """
+    plan, symbols = shown.plan, shown.symbols
     rooms = plan.areas[plan.rooms["closed"].astype(bool)]
-    openings_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
-    half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
-    openings = floorplan.buffer_lines(openings_m, half_m)
-    built = overlays.unite_areas([*plan.bodies, *rooms, *openings])
+    built = overlays.unite_areas([shown.built, *rooms])
     if built.is_empty:
         lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
         drawn = page.place_shape(overlays.unite_lines(lines)).envelope
@@ -213,15 +272,16 @@ def _dimension(
         closed = floorplan.close_gaps(built)
         building = _leave_loose_walls(closed, plan)
         drawn, outline = page.place_shape(closed), page.place_shape(building)
-        known = page.place_shape(_find_known(plan, building))
+        is_known = building if shown.known is None else _clip_known(shown.known, plan, building)
+        known = page.place_shape(is_known)
     swings = [
         shapely.LineString(page.to_paper(flatten(path)))
         for symbol in symbols
         for path in symbol_paths(symbol)
     ]
-    reach = overlays.unite_shapes([drawn, *swings])
+    reach = overlays.unite_shapes([drawn, *swings, *map(page.place_shape, shown.beside)])
     return list(
-        dimensions.dimension_facades(page, outline, reach, known, uncertain, openings_m, space)
+        dimensions.dimension_facades(page, outline, reach, known, uncertain, shown.spans_m, space)
     )
 
 
@@ -245,10 +305,9 @@ def _find_uncertain(plan: FloorPlan) -> BaseGeometry:
     return overlays.unite_shapes([*floorplan.line_shapes(unseen_m), *doubtful])
 
 
-def _find_known(plan: FloorPlan, building: BaseGeometry) -> BaseGeometry:
-    """Return the ground of rooms, and of walls of the building of which both sides were seen."""
-    bodies = overlays.intersect_areas(overlays.unite_areas(plan.known_bodies), building)
-    return overlays.unite_areas([*plan.areas, bodies])
+def _clip_known(known: BaseGeometry, plan: FloorPlan, building: BaseGeometry) -> BaseGeometry:
+    """Return the ground of rooms, and what of the building is known to end where it does."""
+    return overlays.unite_areas([*plan.areas, overlays.intersect_areas(known, building)])
 
 
 def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:

@@ -26,6 +26,10 @@ _FACTS = {
         "sigma_end1_m",
         "n_points",
         "n_scans",
+        "moved_m",
+        "turned_deg",
+        "thickness_changed_m",
+        "thickness_from",
     ),
     "face": ("n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m"),
     "opening": (
@@ -37,6 +41,7 @@ _FACTS = {
         "p_kind",
         "room_a",
         "room_b",
+        "width_changed_m",
     ),
     "room": ("area_m2", "perimeter_m", "closed", "n_scans"),
     "furniture": ("area_m2", "z_min_m", "z_max_m", "n_points", "n_scans"),
@@ -70,17 +75,19 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     for row, area in enumerate(plan.areas):
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
-        yield _area("room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]), of=plan)
+        yield draw_area(
+            "room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]), of=plan
+        )
     for number, part in enumerate([*plan.hidden_floor, *plan.enclosed_ground]):
-        yield _area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
+        yield draw_area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
     unseen_m = floorplan.centrelines_m(plan.unseen)
     for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
         path = [straight(line_m)]
         yield Mark("not-seen", path, element=f"not-seen-{number}", title="not seen")
-    assumed = [*_polygons(plan.assumed)]
+    assumed = [*list_polygons(plan.assumed)]
     for number, part in enumerate(assumed):
         title = f"wall, assumed {plan.assumed_thickness_m:.2f} m thick"
-        yield _area("assumed", part, f"assumed-{number}", title, of=plan)
+        yield draw_area("assumed", part, f"assumed-{number}", title, of=plan)
     known = {"inferred": plan.walls["state"] == "inferred", "low": plan.low}
     known["inferred"] = known["inferred"] & ~plan.low
     known["wall"] = ~known["inferred"] & ~known["low"]
@@ -88,8 +95,13 @@ def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
     for kind in ("wall", "inferred", "low"):
         shape = overlays.subtract_areas(_footprint(plan, known[kind]), above)
         above = overlays.unite_each(above, shape)
-        for number, part in enumerate(_polygons(shape)):
-            yield _area(kind, part, f"{kind}-{number}", kind, of=plan)
+        for number, part in enumerate(list_polygons(shape)):
+            yield draw_area(kind, part, f"{kind}-{number}", kind, of=plan)
+    yield from draw_surfaces(plan)
+
+
+def draw_surfaces(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield surfaces with nothing known behind them."""
     for kind, state in (("surface", "observed"), ("surface-inferred", "inferred")):
         for number, line in enumerate(plan.single(state)):
             path = [straight(shapely.get_coordinates(line))]
@@ -122,12 +134,12 @@ def draw_doubts(plan: FloorPlan) -> Iterator[Mark]:
         facts = facts_of("wall", plan.walls, row)
         title = " ".join(["verify wall", str(number), str(facts.get("doubt", ""))]).strip()
         element = f"verify-wall-{number}"
-        yield _area("verify", plan.bodies[row], element, title, facts, verify=True, of=plan)
+        yield draw_area("verify", plan.bodies[row], element, title, facts, verify=True, of=plan)
     for row, end_m in doubts.list_loose_ends(plan):
         number, facts = plan.walls["wall"][row], facts_of("wall", plan.walls, row)
         around = overlays.buffer_shapes(shapely.Point(end_m), _END_M)
         title = f"verify the end of wall {number} {facts['doubt']}"
-        yield _area("verify", around, f"verify-end-{number}", title, facts, verify=True)
+        yield draw_area("verify", around, f"verify-end-{number}", title, facts, verify=True)
     for row in doubts.find_doubtful_faces(plan).tolist():
         number, facts = plan.faces["face"][row], facts_of("face", plan.faces, row)
         title = " ".join(["verify face", str(number), str(facts.get("doubt", ""))]).strip()
@@ -141,7 +153,9 @@ def draw_corrections(plan: FloorPlan, apart_m: float) -> Iterator[Mark]:
         number, said = plan.walls["wall"][row], plan.walls["corrected"][row]
         around = overlays.buffer_shapes(plan.bodies[row], apart_m, join_style="mitre")
         facts = facts_of("wall", plan.walls, row)
-        yield _area("corrected", around, f"corrected-wall-{number}", f"wall {number} {said}", facts)
+        yield draw_area(
+            "corrected", around, f"corrected-wall-{number}", f"wall {number} {said}", facts
+        )
 
 
 def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
@@ -150,7 +164,7 @@ def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
     for row, outline in enumerate(outlines):
         facts = facts_of("furniture", plan.furniture, row)
         kind = str(plan.furniture["kind"][row])
-        yield _area(kind, outline, f"{kind}-{facts['furniture']}", kind, facts)
+        yield draw_area(kind, outline, f"{kind}-{facts['furniture']}", kind, facts)
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
@@ -193,7 +207,7 @@ def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
     return overlays.subtract_areas(bodies, overlays.unite_areas(plan.gaps))
 
 
-def _area(
+def draw_area(
     kind: str,
     shape: BaseGeometry,
     element: str,
@@ -203,13 +217,15 @@ def _area(
     verify: bool = False,
     of: FloorPlan | None = None,
 ) -> Mark:
+    """Return an area with its outline, and holes."""
     rings = shapely.get_rings(shapely.get_parts(shape))
     paths = [straight(shapely.get_coordinates(ring)) for ring in rings]
     circles_m = NO_CIRCLES if of is None else of.circles_m
     return Mark(kind, paths, True, element, title, facts or {}, verify, circles_m)
 
 
-def _polygons(shape: BaseGeometry) -> Iterator[Polygon]:
+def list_polygons(shape: BaseGeometry) -> Iterator[Polygon]:
+    """Yield the polygons of a shape, none of what is empty."""
     for part in shapely.get_parts(shape):
         if isinstance(part, Polygon) and not part.is_empty:
             yield part

@@ -70,6 +70,18 @@ def wrap_text(text: str, capitals_mm: float, width_mm: float) -> list[str]:
     return [*filter(None, [first]), shorten_text(rest, capitals_mm, width_mm)]
 
 
+def wrap_lines(text: str, capitals_mm: float, width_mm: float) -> list[str]:
+    """Return a text as lines broken between words; a longer word is cut off."""
+    lines: list[str] = []
+    for word in clean_text(text).split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and measure_width_mm(longer, capitals_mm) <= width_mm:
+            lines[-1] = longer
+        else:
+            lines.append(shorten_text(word, capitals_mm, width_mm))
+    return lines
+
+
 def _count_fitting(
     n_letters: int, take_first: Callable[[int], str], capitals_mm: float, width_mm: float
 ) -> int:

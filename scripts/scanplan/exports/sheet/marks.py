@@ -102,6 +102,8 @@ class Symbol:
     element, title : str
     facts : dict
     verify : bool
+    block : str
+        Of `symbols.BLOCKS`, what it is drawn with; empty for that of its kind.
     """
 
     kind: str
@@ -111,6 +113,7 @@ class Symbol:
     title: str
     facts: Facts = field(default_factory=dict, repr=False)
     verify: bool = False
+    block: str = ""
 
     @property
     def width_m(self) -> float:

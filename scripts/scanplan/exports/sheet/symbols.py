@@ -8,7 +8,8 @@ from scanplan.exports.sheet.lettering import rotation
 from scanplan.exports.sheet.marks import Symbol
 from scanplan.types import FloatArray
 
-_WIDEST_LEAF_M = 1.25  # a wider door has two leaves (DIN 18101 ends there)
+WIDEST_LEAF_M = 1.25
+"""A wider door has two leaves (DIN 18101 ends there)."""
 
 
 def _leaf(hinge: float, tip: float) -> list[FloatArray]:
@@ -22,6 +23,16 @@ def _leaf(hinge: float, tip: float) -> list[FloatArray]:
     ]
 
 
+def _swing(hinge: float, tip: float) -> list[FloatArray]:
+    """Return a leaf that opens to the left of its wall's way, and the way of its tip."""
+    length = abs(tip - hinge)
+    bulge = math.copysign(math.tan(math.pi / 8), hinge - tip)
+    return [
+        np.array([[hinge, 0, 0], [hinge, length, 0]]),
+        np.array([[hinge, length, bulge], [tip, 0, 0]]),
+    ]
+
+
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
 BLOCKS = {
     "DOOR-1": _leaf(0.0, 1.0),
@@ -31,6 +42,10 @@ BLOCKS = {
         np.array([[0, 0, 0], [1, 0, 0]]),
     ],
     "PASSAGE": _SIDES,
+    "SWING-LEFT": _swing(0.0, 1.0),
+    "SWING-RIGHT": _swing(1.0, 0.0),
+    "SWING-2": [*_swing(0.0, 0.5), *_swing(1.0, 0.5)],
+    "DOORWAY": _SIDES,
     "PARTING": [np.array([[0, 0, 0], [1, 0, 0]])],
     "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.3, 0.3)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
@@ -41,13 +56,13 @@ BLOCKS = {
 def choose_block(symbol: Symbol) -> str:
     """Return the block of `BLOCKS` that a symbol is drawn with."""
     if symbol.kind == "door":
-        return "DOOR-2" if symbol.width_m > _WIDEST_LEAF_M else "DOOR-1"
-    return symbol.kind.upper()
+        return "DOOR-2" if symbol.width_m > WIDEST_LEAF_M else "DOOR-1"
+    return symbol.block or symbol.kind.upper()
 
 
 def block_scales(symbol: Symbol) -> tuple[float, float]:
     """Return the scales of its block along its wall and across; equal ones keep arcs round."""
-    across_m = symbol.width_m if symbol.kind == "door" else symbol.thickness_m
+    across_m = symbol.width_m if symbol.kind in ("door", "swing") else symbol.thickness_m
     return symbol.width_m, across_m
 
 

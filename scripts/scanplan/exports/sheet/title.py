@@ -48,6 +48,10 @@ class SheetFacts:
     number, of : int
         Which sheet of a set of how many it is.
     sensor : accuracy.SensorErrors
+    drawing : str
+        What kind of drawing it is.
+    north_deg : float or None
+        From the map frame's x axis to true north, counter-clockwise; None where not known.
     """
 
     project: str = ""
@@ -58,6 +62,8 @@ class SheetFacts:
     number: int = 1
     of: int = 1
     sensor: SensorErrors = field(default_factory=SensorErrors)
+    drawing: str = "Floor plan, as surveyed"
+    north_deg: float | None = None
 
 
 def summarise_survey(evidence: Columns, **stated: str | int | SensorErrors) -> SheetFacts:
@@ -89,13 +95,14 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
+    north = "north unknown" if facts.north_deg is None else "north as drawn"
     n_doubts = len(list_to_verify(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
     rows = [
         [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
-        [("Drawing", f"Floor plan, as surveyed{by_hand}", 2), ("Survey", plan.name, 1)],
+        [("Drawing", f"{facts.drawing}{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
             ("Accuracy", state_accuracy(plan, facts.sensor), 2),
@@ -110,7 +117,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
         ],
         [
-            ("Frame", f"map, {turn}; north unknown", 2),
+            ("Frame", f"map, {turn}; {north}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
         [("Verdict", _state_verdict(plan), 3)],
@@ -182,7 +189,7 @@ def draw_legend(kinds: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | 
     yield from _heads(slots, ["Legend"], [0.0])
     for kind, x, y in rows:
         low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
-        if kind in (*OPENINGS, "parting"):
+        if kind in (*OPENINGS, "parting", "doorway"):
             paths, closed = _sample_symbol(kind, x + Paper.SAMPLE / 2, y), False
         elif STYLES[kind].fill != "none" or kind == "verify":
             paths, closed = [_box(x + Paper.GAP, low, x + Paper.SAMPLE, high)], True
@@ -202,6 +209,13 @@ def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
     sample = Symbol(kind, ends, Paper.ROW / 4, "", "")
     block = BLOCKS["DOOR-1"] if kind == "door" else None
     return [straight(flatten(path)) for path in symbol_paths(sample, block)]
+
+
+def draw_notes(notes: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+    """Yield lines of words below a head."""
+    yield from _heads(slots, ["Notes"], [0.0])
+    for note, (x, y) in zip(notes, _row_places(slots), strict=True):
+        yield _word("title", note, x + Paper.GAP, y, Letters.SMALL)
 
 
 def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
@@ -229,8 +243,8 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
         )
 
 
-def draw_scale_bar(page: Page, slot: Slot) -> Iterator[Mark | Word]:
-    """Yield a scale bar, and the axes of the map frame as they lie on the sheet."""
+def draw_scale_bar(page: Page, slot: Slot, north_deg: float | None = None) -> Iterator[Mark | Word]:
+    """Yield a scale bar, and the axes of the map frame as they lie on the sheet, or north."""
     length_m = 10.0 ** np.floor(np.log10(0.75 * Paper.COLUMN / page.mm_per_m))
     parts = 5
     while length_m * 2 * page.mm_per_m <= 0.7 * Paper.COLUMN:
@@ -245,12 +259,17 @@ def draw_scale_bar(page: Page, slot: Slot) -> Iterator[Mark | Word]:
     for share, unit in ((0, ""), (1, " m")):
         text = f"{share * length_m:g}{unit}"
         yield _word("title", text, x + share * parts * width, y - 2.2, Letters.SMALL, 0.5)
-    yield from _draw_axes(page, np.array([slot.x_mm + 10.0, slot.y_mm - 4.4 * Paper.ROW]))
+    origin = np.array([slot.x_mm + 10.0, slot.y_mm - 4.4 * Paper.ROW])
+    yield from _draw_axes(page, origin, north_deg)
 
 
-def _draw_axes(page: Page, origin: FloatArray) -> Iterator[Mark | Word]:
+def _draw_axes(page: Page, origin: FloatArray, north_deg: float | None) -> Iterator[Mark | Word]:
     reach = 1.5 * Paper.ROW
-    for name, along in (("x", np.array([1.0, 0.0])), ("y", np.array([0.0, 1.0]))):
+    east = np.array([1.0, 0.0])
+    axes = {"x": east, "y": np.array([0.0, 1.0])}
+    if north_deg is not None:
+        axes = {"N": rotation(north_deg) @ east}
+    for name, along in axes.items():
         way = rotation(page.turn_deg) @ along
         side = np.array([-way[1], way[0]])
         tip = origin + reach * way
@@ -259,6 +278,8 @@ def _draw_axes(page: Page, origin: FloatArray) -> Iterator[Mark | Word]:
         yield Mark("scale-bar", [straight(head)], True, f"axis-{name}-head")
         place = tip + 1.6 * way
         yield Word("title", name, place, Letters.SMALL)
+    if north_deg is not None:
+        return
     turned = round(page.turn_deg, 1) + 0.0
     notes = ["axes of the map frame", f"turned by {turned:+.1f}°", "north unknown"]
     x, y = origin + np.array([14.0, reach])

@@ -20,10 +20,15 @@ from scanplan.validation.confidence import END
 from scanplan.validation.doubts import MARKS, find_doubtful_rooms, list_loose_ends, mark_doubt
 
 
-def stamp_rooms(page: Page, plan: FloorPlan, space: LabelSpace) -> list[Stamp]:
-    """Return the rooms' stamps, by number: small rooms have the choice of places first."""
+def stamp_rooms(
+    page: Page, plan: FloorPlan, space: LabelSpace, *, is_doubted: bool = True
+) -> list[Stamp]:
+    """Return the rooms' stamps, by number: small rooms have the choice of places first.
+
+    Doubts are marked if they are to be.
+    """
     rooms = plan.rooms
-    doubtful, corrected = find_doubtful_rooms(plan), is_corrected(rooms)
+    doubtful, corrected = find_doubtful_rooms(plan) & is_doubted, is_corrected(rooms)
     stamps: dict[int, Stamp] = {}
     areas: list[BaseGeometry] = plan.areas.tolist()
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():

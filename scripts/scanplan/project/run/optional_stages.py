@@ -22,6 +22,7 @@ NEEDED_BY: dict[str, tuple[str, ...]] = {
     "plan_next_visit": (),
     "draw_figures": (),
     "export_plan": (),
+    "export_presentation": (),
     "export_files": (),
     "export_cloud": (),
     "evaluate_poses": (),

@@ -1,0 +1,80 @@
+"""Write the plan as a regular drawing that is handed on: sheet, CAD, and what was changed."""
+
+from collections.abc import Mapping
+
+from scanplan.exports import drawing, dxf, svg
+from scanplan.exports.drafting.presentation import compose_presentation
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.sheet.accuracy import SensorErrors
+from scanplan.exports.sheet.title import summarise_survey
+from scanplan.plan import floorplan_files
+from scanplan.project import code_files
+from scanplan.stage import figure_files, log
+from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath, Settings
+
+
+def export_presentation(
+    plan: Mapping[str, FilePath],
+    outputs: Mapping[str, FilePath],
+    *,
+    name: str,
+    settings: Settings,
+    version: str = "",
+) -> None:
+    """Write a regular plan as SVG, PDF, PNG and DXF, and its walls as a table.
+
+    Parameters
+    ----------
+    plan : dict of str to path-like
+        As of `export_plan`.
+    outputs : dict of str to path-like
+        Of `export_formats.PRESENTATION`.
+    settings : dict
+        See `stage_settings.select_presentation`.
+    version : str
+        Of the software, for the title block.
+    """
+    assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+    measured = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    facts = summarise_survey(
+        tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True),
+        project=settings["project"] or "",
+        storey=settings["storey"] or "",
+        version=version,
+        sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
+        north_deg=settings["north_deg"],
+    )
+    catalogue = settings["catalogue"]
+    walls_m, doors_m, windows_m = (
+        list(catalogue[kind].values()) for kind in ("walls", "doors", "windows")
+    )
+    drafting = DraftSettings(
+        settings["max_change_m"], walls_m, doors_m, windows_m, catalogue["facade_m"]
+    )
+    regular, changes = draft_plan(measured, drafting)
+    turn_deg = None if settings["turn"] else 0.0
+    sheet = compose_presentation(measured, regular, changes, facts, turn_deg=turn_deg)
+    figure = drawing.draw_sheet(sheet)
+    atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
+    title = f"Floor plan of {sheet.name}"
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
+    atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
+    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
+    columns = {column: regular.walls[column] for column in schemas.PRESENTATION.columns}
+    tables.write_table(outputs["walls"], schemas.PRESENTATION, columns, allow_empty=True)
+    log.log_line(
+        f"export_presentation: {changes.n_square} of {changes.n_walls} walls square, none moved by"
+        f" more than {1000 * changes.moved_m:.0f} mm; 1:{sheet.page.scale} on {sheet.page.name}"
+    )
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        export_presentation(
+            dict(snakemake.input.items()),
+            dict(snakemake.output.items()),
+            name=snakemake.wildcards.dataset,
+            settings=snakemake.params.settings,
+            version=code_files.state_version(),
+        )

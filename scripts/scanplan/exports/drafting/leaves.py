@@ -1,0 +1,78 @@
+"""How doors open, where their leaves were seen standing open."""
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scanplan.exports.sheet.marks import Symbol
+from scanplan.exports.sheet.symbols import WIDEST_LEAF_M
+from scanplan.store import schemas
+from scanplan.types import Array, Columns, FloatArray
+
+_HINGE_M = 0.2  # from a jamb to the end of its leaf: what a leaf is thick, and its end is off by
+_LEAST_SHARE = (
+    0.5  # of a leaf's length that is seen beside a door: a shorter piece is something else
+)
+_LEAST_SINE = 0.25  # a leaf turned less than 15 degrees is shut, and does not say to which side
+
+
+def find_leaves(furniture: Columns) -> FloatArray:
+    """Return the middle lines (k, 2, 2) of leaves among what stands about, map frame."""
+    kinds = np.asarray(furniture["kind"], str)
+    outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[kinds == schemas.LEAF])
+    return np.array([_middle_line(outline) for outline in outlines]).reshape(-1, 2, 2)
+
+
+def draw_swing(door: Symbol, leaves_m: FloatArray) -> Symbol:
+    """Return a door with its swing as its leaf was seen, or as a plain doorway.
+
+    Parameters
+    ----------
+    door : Symbol
+        In the middle of its wall.
+    leaves_m : (k, 2, 2) float
+    """
+    way = (door.ends_m[1] - door.ends_m[0]) / door.width_m
+    left = np.array([-way[1], way[0]])
+    is_double = door.width_m > WIDEST_LEAF_M
+    leaf_m = door.width_m / (2 if is_double else 1)
+    found = [
+        (hinge, np.sign(side))
+        for ends_m in leaves_m
+        for hinge, side in [_read_leaf(door.ends_m, ends_m, left, leaf_m)]
+        if hinge >= 0
+    ]
+    if not found:
+        return replace(door, kind="doorway")
+    hinge, side = found[0]
+    # hinged in the side of the wall that it opens to
+    ends_m = door.ends_m + side * door.thickness_m / 2 * left
+    if is_double:
+        return replace(
+            door, kind="swing", ends_m=ends_m if side > 0 else ends_m[::-1], block="SWING-2"
+        )
+    is_left = (hinge == 0) == (side > 0)
+    block = "SWING-LEFT" if is_left else "SWING-RIGHT"
+    return replace(door, kind="swing", ends_m=ends_m if side > 0 else ends_m[::-1], block=block)
+
+
+def _read_leaf(
+    jambs_m: FloatArray, ends_m: FloatArray, left: FloatArray, leaf_m: float
+) -> tuple[int, float]:
+    """Return at which jamb a leaf hangs, -1 at none, and how far it leads to the left."""
+    apart_m = np.hypot(*np.moveaxis(jambs_m[:, None] - ends_m, 2, 0))
+    hinge, end = np.unravel_index(np.argmin(apart_m), apart_m.shape)
+    along_m = ends_m[1 - end] - ends_m[end]
+    length_m = float(np.hypot(*along_m))
+    side_m = float(along_m @ left)
+    is_leaf = apart_m[hinge, end] <= _HINGE_M and length_m >= _LEAST_SHARE * leaf_m
+    return (int(hinge), side_m) if is_leaf and abs(side_m) > _LEAST_SINE * length_m else (-1, 0.0)
+
+
+def _middle_line(outline: shapely.Geometry) -> Array:
+    """Return the longer middle line (2, 2) of the least rectangle around a shape."""
+    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(outline))[:4]
+    one_m, other_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
+    sides = corners_m if one_m < other_m else np.roll(corners_m, -1, axis=0)
+    return np.array([sides[:2].mean(axis=0), sides[2:].mean(axis=0)])

@@ -1,0 +1,81 @@
+"""Openings that follow their walls, as wide as the catalogue has them."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from scanplan.exports.drafting.nominal_sizes import choose_sizes
+from scanplan.plan.floorplan import centrelines_m
+from scanplan.types import Columns, FloatArray, IntArray
+
+_SIGMA_M = 0.01  # of a width, by good scans
+_CHANGED_M = 0.03  # sizes are a decimetre apart: what is farther off is none of them
+_APART_M = 0.02  # between openings, and from the end of their wall: thinner piers are not built
+
+
+def move_openings(
+    openings: Columns,
+    hosts: IntArray,
+    lines_m: FloatArray,
+    sizes_m: Mapping[str, Sequence[float]],
+    tolerance_m: float,
+) -> Columns:
+    """Return openings in the lines of their walls, with a column `width_changed_m`.
+
+    One of nearly a size of the catalogue is as wide, about its middle, where it has room for it.
+
+    Parameters
+    ----------
+    openings : dict of str to (m,) array
+        The columns of `schemas.OPENINGS`.
+    hosts : (m,) int
+        Rows of their walls, -1 of none: these stay.
+    lines_m : (n, 2, 2) float
+        Of the walls.
+    sizes_m : dict of str to sequence of float
+        Widths of the catalogue by types of openings.
+    tolerance_m : float
+        No width changes by more.
+    """
+    ends_m = centrelines_m(openings)
+    widths_m = np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T)
+    wanted_m = widths_m.copy()
+    for kind, sizes in sizes_m.items():
+        rows = np.flatnonzero((openings["type"] == kind) & (hosts >= 0))
+        nominal_m = choose_sizes(
+            widths_m[rows],
+            np.full(len(rows), _SIGMA_M),
+            np.full(len(rows), min(tolerance_m, _CHANGED_M)),
+            sizes,
+            np.ones(len(rows)),
+        )
+        wanted_m[rows] = np.where(np.isnan(nominal_m), widths_m[rows], nominal_m)
+    for wall in np.unique(hosts[hosts >= 0]).tolist():
+        rows = np.flatnonzero(hosts == wall)
+        ends_m[rows] = _place_along(ends_m[rows], wanted_m[rows], lines_m[wall])
+    made_m = np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T)
+    changed = dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), ends_m.reshape(-1, 4).T, strict=True))
+    return {**openings, **changed, "width_m": made_m, "width_changed_m": made_m - widths_m}
+
+
+def _place_along(ends_m: FloatArray, wanted_m: FloatArray, line_m: FloatArray) -> FloatArray:
+    """Return the ends (m, 2, 2) of a wall's openings on its line, as wide as there is room."""
+    way_m = line_m[1] - line_m[0]
+    length_m = float(np.hypot(*way_m))
+    way = way_m / length_m
+    along_m = (ends_m - line_m[0]) @ way
+    low_m, high_m = along_m.min(axis=1), along_m.max(axis=1)
+    grown_m = (wanted_m - (high_m - low_m)) / 2
+    for row in range(len(along_m)):
+        others = np.arange(len(along_m)) != row
+        before_m = np.append(high_m[others & (high_m <= low_m[row])], 0.0).max()
+        after_m = np.append(low_m[others & (low_m >= high_m[row])], length_m).min()
+        room_m = min(low_m[row] - before_m, after_m - high_m[row]) - _APART_M
+        # a narrower one always has room; a wider one only where a pier is left on both sides
+        if grown_m[row] > max(room_m, 0.0):
+            continue
+        low_m[row] -= grown_m[row]
+        high_m[row] += grown_m[row]
+    is_reversed = along_m[:, 0] > along_m[:, 1]
+    first_m, second_m = np.where(is_reversed, high_m, low_m), np.where(is_reversed, low_m, high_m)
+    return line_m[0] + np.stack([first_m, second_m], axis=1)[..., None] * way

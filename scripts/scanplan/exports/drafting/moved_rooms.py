@@ -1,0 +1,89 @@
+"""Outlines of rooms that follow the walls they lie on."""
+
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from scanplan.exports.drafting.moved_walls import MovedWalls
+from scanplan.geometry import overlays
+from scanplan.plan.tolerances import END_M
+from scanplan.types import FloatArray
+
+ON_M = 0.02
+"""What lies on a wall's side is off it by less: outlines are drawn along sides."""
+_ALONG_SINE = 0.05  # of 3 degrees: an edge that runs along a wall
+_CORNER_SINE = 0.17  # of 10 degrees: edges that turn less go on, and do not cross
+_LEAST_EDGE_M = 0.03  # a shorter one has no direction
+
+
+def move_outline(outline: Polygon, moved: MovedWalls) -> Polygon:
+    """Return a room's outline as its walls are now.
+
+    Every edge that lay along a side of a wall does so again; a corner is where its two edges cross,
+    or on the one of them that lies on a wall. What lies on no wall stays.
+    """
+    rings = [
+        _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(outline)
+    ]
+    whole = [ring for ring in rings if len(ring) >= 3]
+    shape = overlays.repair_areas(Polygon(whole[0], whole[1:])) if whole else outline
+    parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
+    return max(parts, key=lambda part: part.area, default=outline)
+
+
+def _move_ring(corners_m: FloatArray, moved: MovedWalls) -> list[FloatArray]:
+    edges_m = np.array([*pairwise(corners_m)])
+    hosts = [_find_host(edge_m, moved) for edge_m in edges_m]
+    lines_m = [
+        moved.move_points(edge_m, host) if host >= 0 else edge_m
+        for edge_m, host in zip(edges_m, hosts, strict=True)
+    ]
+    points_m: list[FloatArray] = []
+    for row, corner_m in enumerate(edges_m[:, 0]):
+        before, after = row - 1, row
+        is_on = [hosts[before] >= 0, hosts[after] >= 0]
+        ends_m = [lines_m[before][1], lines_m[after][0]]
+        if all(is_on):
+            points_m += _meet(lines_m[before], lines_m[after])
+        elif any(is_on):
+            points_m.append(ends_m[0] if is_on[0] else ends_m[1])
+        else:
+            points_m.append(corner_m)
+    return points_m
+
+
+def _find_host(edge_m: FloatArray, moved: MovedWalls) -> int:
+    """Return the row of the wall that an edge runs along a side of, -1 of none."""
+    walls = moved.before
+    along_m = edge_m[1] - edge_m[0]
+    length_m = np.hypot(*along_m)
+    if length_m < _LEAST_EDGE_M:
+        return -1
+    way = along_m / length_m
+    sines = np.abs(walls.ways[:, 0] * way[1] - walls.ways[:, 1] * way[0])
+    to_m = edge_m.mean(axis=0) - walls.lines_m[:, 0]
+    across_m = to_m[:, 1] * walls.ways[:, 0] - to_m[:, 0] * walls.ways[:, 1]
+    ahead_m = np.einsum("ij,ij->i", to_m, walls.ways)
+    off_m = np.abs(np.abs(across_m) - walls.half_m)
+    beyond_m = np.maximum(-ahead_m, ahead_m - walls.lengths_m)
+    is_on = (sines <= _ALONG_SINE) & (off_m <= ON_M) & (beyond_m <= END_M)
+    if not is_on.any():
+        return -1
+    # of collinear walls that which it is beside
+    return int(np.argmin(np.where(is_on, np.round(off_m + np.maximum(beyond_m, 0), 6), np.inf)))
+
+
+def _meet(before_m: FloatArray, after_m: FloatArray) -> list[FloatArray]:
+    """Return the corner (2,) of two edges that lie on walls; two where they run on as one."""
+    ways = [line_m[1] - line_m[0] for line_m in (before_m, after_m)]
+    ways = [way / np.hypot(*way) for way in ways]
+    sine = ways[0][0] * ways[1][1] - ways[0][1] * ways[1][0]
+    ends_m = [before_m[1], after_m[0]]
+    if abs(sine) < _CORNER_SINE:
+        is_one = np.hypot(*(ends_m[1] - ends_m[0])) < 1e-6
+        return ends_m[:1] if is_one else ends_m
+    to_m = after_m[0] - before_m[1]
+    along_m = (to_m[0] * ways[1][1] - to_m[1] * ways[1][0]) / sine
+    return [before_m[1] + along_m * ways[0]]

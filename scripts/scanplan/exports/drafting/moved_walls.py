@@ -1,0 +1,131 @@
+"""Walls where the adjustment has put them, joined anew, and what lies on them taken along."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scanplan.exports.drafting.adjustment import Adjusted
+from scanplan.exports.drafting.priors import Wanted
+from scanplan.exports.drafting.wall_lines import WallLines
+from scanplan.plan.floorplan import line_shapes
+from scanplan.plan.tolerances import END_M
+from scanplan.types import BoolArray, FloatArray
+
+_LEAST_SINE = 0.17  # walls that turn by less than 10 degrees run on, and have no crossing
+
+
+@dataclass(frozen=True, eq=False)
+class MovedWalls:
+    """Walls before and after.
+
+    Attributes
+    ----------
+    before : WallLines
+    lines_m : (n, 2, 2) float64
+        Where the lines are now, what they were of as before.
+    grown_m : (n,) float64
+        What their thickness has grown by.
+    """
+
+    before: WallLines
+    lines_m: FloatArray
+    grown_m: FloatArray
+
+    def find_offset_m(self, points_m: FloatArray, wall: int) -> FloatArray:
+        """Return how far points (..., 2) lay to the left of a wall's line, (...,)."""
+        return (points_m - self.before.lines_m[wall, 0]) @ _left_of(self.before.ways[wall])
+
+    def move_points(self, points_m: FloatArray, wall: int) -> FloatArray:
+        """Return points (..., 2) beside or on a wall's line as far from where it is now.
+
+        What lay on a side of a wall that has become thicker stays on it.
+        """
+        line_m = self.lines_m[wall]
+        left = _left_of((line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0])))
+        half_m = self.before.half_m[wall]
+        offset_m = self.find_offset_m(points_m, wall)
+        side = np.sign(offset_m) * (np.abs(offset_m) > half_m / 2) * (half_m > 0)
+        wanted_m = offset_m + side * self.grown_m[wall] / 2
+        off_m = wanted_m - (points_m - line_m[0]) @ left
+        return points_m + off_m[..., None] * left
+
+
+def move_walls(walls: WallLines, wanted: Wanted, adjusted: Adjusted) -> MovedWalls:
+    """Return walls as adjusted, their ends not yet joined."""
+    angles_rad = walls.angles_rad + wanted.turn_rad
+    left = np.column_stack([-np.sin(angles_rad), np.cos(angles_rad)])
+    lines_m = walls.lines_m + adjusted.shift_m[..., None] * left[:, None]
+    return MovedWalls(walls, lines_m, adjusted.grown_m)
+
+
+def join_ends(walls: WallLines, lines_m: FloatArray, thickness_m: FloatArray) -> FloatArray:
+    """Return lines (n, 2, 2) with ends that met a wall, as measured, drawn on or cut to its line.
+
+    Parameters
+    ----------
+    walls : WallLines
+        As measured.
+    lines_m : (n, 2, 2) float
+        Lines as they are to be drawn, in the middle of walls.
+    thickness_m : (n,) float
+        As drawn.
+    """
+    joined_m = np.array(lines_m, float)
+    apart_m, reach_m = _measure_gaps(walls)
+    own = np.arange(len(apart_m)) // 2
+    is_met = (apart_m <= reach_m) & _is_turned(walls.ways)[own]
+    nearest = np.where(is_met, apart_m - walls.half_m, np.inf)
+    drawn_half_m = thickness_m / 2
+    for end in np.flatnonzero(is_met.any(axis=1)).tolist():
+        wall, other = int(own[end]), int(np.argmin(np.round(nearest[end], 6)))
+        way_m = lines_m[wall, 1] - lines_m[wall, 0]
+        way = way_m / np.hypot(*way_m)
+        along_m = _cross_along(lines_m[wall, end % 2], way, lines_m[other])
+        # as far as the walls met, and what their sides are drawn farther off
+        limit_m = reach_m[end, other] + drawn_half_m[wall] + drawn_half_m[other]
+        is_turned_over = (along_m if end % 2 == 0 else -along_m) >= np.hypot(*way_m)
+        if abs(along_m) <= limit_m and not is_turned_over:
+            joined_m[wall, end % 2] = lines_m[wall, end % 2] + along_m * way
+    too_short = np.hypot(*(joined_m[:, 1] - joined_m[:, 0]).T) < END_M / 10
+    is_reversed = np.einsum("ij,ij->i", *(m[:, 1] - m[:, 0] for m in (joined_m, lines_m))) <= 0
+    bad = too_short | is_reversed
+    joined_m[bad] = lines_m[bad]
+    return joined_m
+
+
+def find_met(walls: WallLines) -> BoolArray:
+    """Return which ends (n, 2) of walls are at another wall."""
+    apart_m, reach_m = _measure_gaps(walls)
+    return (apart_m <= reach_m).any(axis=1).reshape(-1, 2)
+
+
+def _measure_gaps(walls: WallLines) -> tuple[FloatArray, FloatArray]:
+    """Return how far ends are from other walls' lines, and may be to meet these, both (2n, n).
+
+    Infinity from their own.
+    """
+    ends_m = walls.lines_m.reshape(-1, 2)
+    points = np.asarray(shapely.points(ends_m), object)[:, None]
+    apart_m = shapely.distance(points, line_shapes(walls.lines_m))
+    own = np.arange(len(ends_m)) // 2
+    apart_m[np.arange(len(ends_m)), own] = np.inf
+    return apart_m, walls.half_m[own][:, None] + walls.half_m + END_M
+
+
+def _is_turned(ways: FloatArray) -> BoolArray:
+    return np.abs(ways[:, None, 0] * ways[:, 1] - ways[:, None, 1] * ways[:, 0]) >= _LEAST_SINE
+
+
+def _cross_along(place_m: FloatArray, way: FloatArray, line_m: FloatArray) -> float:
+    """Return how far along a way from a place a line is crossed; infinity of parallel ones."""
+    x, y = line_m[1] - line_m[0]
+    sine = way[0] * y - way[1] * x
+    if abs(sine) < 1e-9:
+        return np.inf
+    to_x, to_y = line_m[0] - place_m
+    return float((to_x * y - to_y * x) / sine)
+
+
+def _left_of(way: FloatArray) -> FloatArray:
+    return np.array([-way[1], way[0]])

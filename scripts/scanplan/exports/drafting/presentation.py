@@ -1,0 +1,152 @@
+"""The drawing that is handed on: a regular plan with solid walls, on a sheet."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.drafting.leaves import draw_swing, find_leaves
+from scanplan.exports.drafting.regular_plan import MEASURED, Changes
+from scanplan.exports.sheet import content
+from scanplan.exports.sheet.composition import Sheet, Shown, lay_out
+from scanplan.exports.sheet.lettering import wrap_lines
+from scanplan.exports.sheet.marks import Mark, Symbol, straight
+from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.exports.sheet.title import SheetFacts
+from scanplan.geometry import overlays
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import WAYS, FloorPlan, say_count
+from scanplan.plan.tolerances import CORNER_M
+from scanplan.store import schemas
+from scanplan.types import BoolArray, FloatArray
+
+_PLAIN = {"gap": "passage"}
+"""Openings drawn as others: what lies in them is said on the sheet of what was measured."""
+
+
+def compose_presentation(
+    measured: FloorPlan,
+    regular: FloorPlan,
+    changes: Changes,
+    facts: SheetFacts | None = None,
+    *,
+    turn_deg: float | None = None,
+) -> Sheet:
+    """Compose the sheet of a regular plan.
+
+    Walls are solid, also where their thickness is assumed; doors swing where a leaf was seen.
+    Rooms and openings alone are dimensioned, between surfaces that were measured; neither furniture
+    nor doubts are drawn.
+
+    Parameters
+    ----------
+    measured, regular : FloorPlan
+        A plan, and what `regular_plan.draft_plan` makes of it with its changes.
+    facts, turn_deg
+        See `composition.lay_out`.
+    """
+    is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
+    spans_m = _find_spans(regular, is_measured)
+    unseen_m = floorplan.centrelines_m(regular.unseen)
+    shown = Shown(
+        plan=regular,
+        titled=measured,
+        marks=[*_draw_marks(regular)],
+        symbols=[*_list_symbols(regular)],
+        uncertain=overlays.unite_shapes(floorplan.line_shapes(unseen_m)),
+        built=_find_built(regular, is_measured, spans_m),
+        spans_m=spans_m,
+        known=None,
+        beside=regular.bodies.tolist(),
+        is_labelled=False,
+        notes=_list_notes(changes),
+    )
+    stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
+    return lay_out(shown, stated, turn_deg=turn_deg)
+
+
+def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
+    for row, area in enumerate(plan.areas):
+        facts = {"name": plan.room_names[row], **content.facts_of("room", plan.rooms, row)}
+        number = plan.rooms["room"][row]
+        yield content.draw_area("room", area, f"room-{number}", plan.room_names[row], facts)
+    unseen_m = floorplan.centrelines_m(plan.unseen)
+    for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
+        yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")
+    yield from content.draw_axes(plan)
+    yield from content.draw_surfaces(plan)
+    cut_out = overlays.unite_areas([*plan.gaps, *plan.areas])
+    above: BaseGeometry = shapely.Polygon()
+    for kind, is_wanted in (("poche", ~plan.low), ("low", plan.low)):
+        bodies = overlays.unite_areas(plan.bodies[is_wanted])
+        shape = overlays.subtract_areas(overlays.subtract_areas(bodies, cut_out), above)
+        above = overlays.unite_each(above, shape)
+        for number, part in enumerate(content.list_polygons(shape)):
+            yield content.draw_area(kind, part, f"{kind}-{number}", "wall")
+    is_column = plan.furniture["kind"] == schemas.COLUMN
+    outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)[is_column])
+    for number, outline in zip(plan.furniture["furniture"][is_column], outlines, strict=True):
+        yield content.draw_area("poche", outline, f"column-{number}", "column")
+
+
+def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
+    """Yield openings of walls, and ways between rooms; a pane in no wall is furniture here."""
+    leaves_m = find_leaves(plan.furniture)
+    is_free = (plan.hosts < 0) & ~np.isin(np.asarray(plan.openings["type"], str), WAYS)
+    for symbol, is_loose in zip(content.list_symbols(plan), is_free.tolist(), strict=True):
+        if is_loose:
+            continue
+        if symbol.kind == "door":
+            yield draw_swing(symbol, leaves_m)
+        else:
+            yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
+
+
+def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
+    """Return openings (m, 2, 2) in the middle of walls, or in the surface that was seen."""
+    spans_m = floorplan.centrelines_m(plan.openings)
+    lines_m = floorplan.centrelines_m(plan.walls)
+    from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
+    for row, host in enumerate(plan.hosts.tolist()):
+        if host >= 0 and not is_measured[host]:
+            x, y = lines_m[host, 1] - lines_m[host, 0]
+            left = np.array([-y, x]) / np.hypot(x, y)
+            side = 1 if from_left[host] else -1
+            spans_m[row] += side * plan.walls["thickness_m"][host] / 2 * left
+    return spans_m
+
+
+def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) -> BaseGeometry:
+    """Return walls that were measured at rooms: what stands off them is not dimensioned."""
+    is_through = np.append(is_measured, False)[plan.hosts]
+    half_m = np.nan_to_num(np.asarray(plan.openings["thickness_m"], float)) / 2
+    openings = floorplan.buffer_lines(spans_m[is_through], half_m[is_through])
+    built = overlays.unite_areas([*plan.bodies[is_measured], *openings])
+    rooms = overlays.unite_areas(plan.areas)
+    near = overlays.buffer_shapes(rooms, CORNER_M, join_style="mitre")
+    return overlays.intersect_areas(built, near)
+
+
+def _list_notes(changes: Changes) -> list[str]:
+    """Return what has been changed of the plan, and by what rule areas are, in lines."""
+    walls = say_count(changes.n_walls, "wall")
+    assumed = say_count(changes.n_assumed, "wall")
+    left_out = say_count(changes.n_left_out, "short piece")
+    sentences = [
+        f"Of {walls} {changes.n_square} are square to the building, {changes.n_through} in line"
+        f" with others, {changes.n_nominal} of nominal thickness.",
+        f"No side of a wall moved by more than {_in_mm(changes.moved_m)}, no wall turned by more"
+        f" than {changes.turned_deg:.1f}° or thickened by more than {_in_mm(changes.thickness_m)}.",
+        f"Openings widened by at most {_in_mm(changes.width_m)}.",
+        f"{assumed} seen from one side: thickness assumed." * (changes.n_assumed > 0),
+        f"{left_out} of wall at no room left out." * (changes.n_left_out > 0),
+        "Areas are net (NRF, DIN 277): between walls, less columns and reveals.",
+    ]
+    width_mm = Paper.COLUMN - 4 * Paper.GAP
+    return [line for said in sentences for line in wrap_lines(said, Letters.SMALL, width_mm)]
+
+
+def _in_mm(length_m: float) -> str:
+    return f"{1000 * length_m:.0f} mm"

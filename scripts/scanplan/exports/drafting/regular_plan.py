@@ -1,0 +1,206 @@
+"""The regular plan: that of a survey as a draughtsman draws it, and what he changed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
+from scanplan.exports.drafting.adjustment import adjust_walls
+from scanplan.exports.drafting.facades import find_facades
+from scanplan.exports.drafting.moved_walls import MovedWalls
+from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
+from scanplan.exports.drafting.wall_lines import gather_lines
+from scanplan.geometry import overlays
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.tolerances import CORNER_M
+from scanplan.store import schemas
+from scanplan.types import Columns, FloatArray
+
+_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+_DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
+_PIECE_M = 2 * CORNER_M  # as far as a wall of the greatest usual thickness is deep
+MEASURED, ASSUMED = "measured", "assumed"
+"""Where a wall's thickness is from."""
+
+
+@dataclass(frozen=True)
+class DraftSettings:
+    """How a regular plan is drawn.
+
+    Attributes
+    ----------
+    tolerance_m : float
+        Nothing is moved farther, nor made wider by more.
+    walls_m, doors_m, windows_m : sequence of float
+        Thicknesses and widths of the catalogue.
+    facade_m : float
+        ASSUME of an outer wall that was seen from inside only.
+    """
+
+    tolerance_m: float
+    walls_m: Sequence[float]
+    doors_m: Sequence[float]
+    windows_m: Sequence[float]
+    facade_m: float
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What has been changed of a plan.
+
+    Attributes
+    ----------
+    n_walls, n_square, n_through, n_nominal : int
+        Walls, of these in a main direction, in one line with another, of a nominal thickness.
+    moved_m, turned_deg, thickness_m, width_m : float
+        The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
+    n_assumed : int
+        Walls whose thickness is assumed.
+    """
+
+    n_walls: int
+    n_square: int
+    n_through: int
+    n_nominal: int
+    moved_m: float
+    turned_deg: float
+    thickness_m: float
+    width_m: float
+    n_assumed: int
+    n_left_out: int = 0
+
+
+def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan, Changes]:
+    """Return a plan with regular walls, its faces, rooms and openings with them, and the changes.
+
+    Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
+    openings `width_changed_m`. All walls have a thickness; lines of those seen from one side are in
+    their middle. Doubts are left out: they stand on the sheet of what was measured.
+    """
+    plan = _leave_pieces(surveyed)
+    walls = gather_lines(plan, settings.tolerance_m)
+    wanted = want_regular(walls, tuple(settings.walls_m))
+    adjusted = adjust_walls(walls, wanted)
+    moved = moved_walls.move_walls(walls, wanted, adjusted)
+    grown_m = np.where(walls.is_thick, adjusted.grown_m, 0.0)
+    behind_m = np.where(
+        find_facades(plan),
+        max(settings.facade_m, plan.assumed_thickness_m),
+        plan.assumed_thickness_m,
+    )
+    thickness_m = np.where(walls.is_thick, walls.thickness_m + grown_m, behind_m)
+    # in the middle of what is behind the face
+    side = np.where(walls.is_seen_from_left, -1.0, 1.0) * ~walls.is_thick
+    middles_m = moved.lines_m + _left_normals(moved.lines_m) * (side * behind_m / 2)[:, None, None]
+    drawn_m = moved_walls.join_ends(walls, middles_m, thickness_m)
+    openings = moved_openings.move_openings(
+        plan.openings,
+        plan.hosts,
+        drawn_m,
+        {"door": settings.doors_m, "window": settings.windows_m},
+        settings.tolerance_m,
+    )
+    openings = {**openings, "thickness_m": np.append(thickness_m, np.nan)[plan.hosts]}
+    turned_deg = np.degrees(_turn_between(walls.lines_m, moved.lines_m))
+    changed = {
+        **_ends_of(drawn_m),
+        "thickness_m": thickness_m,
+        "moved_m": adjusted.moved_m,
+        "turned_deg": turned_deg,
+        "thickness_changed_m": grown_m,
+        "thickness_from": np.where(walls.is_thick, MEASURED, ASSUMED).astype(object),
+    }
+    kinds = [{wall for p in adjusted.held if p.kind == kind for wall in p.walls}
+             for kind in (DIRECTION, THROUGH, THICKNESS)]  # fmt: skip
+    changes = Changes(
+        len(thickness_m),
+        *map(len, kinds),
+        moved_m=float(adjusted.moved_m.max(initial=0)),
+        turned_deg=float(np.abs(turned_deg).max(initial=0)),
+        thickness_m=float(np.abs(grown_m).max(initial=0)),
+        width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
+        n_assumed=int((~walls.is_thick).sum()),
+        n_left_out=len(surveyed.walls["wall"]) - len(thickness_m),
+    )
+    regular = replace(
+        plan,
+        walls=_leave_doubts({**plan.walls, **changed}),
+        faces=_leave_doubts(_move_faces(plan, moved)),
+        openings=_leave_doubts(openings),
+        rooms=_leave_doubts(_move_rooms(plan, moved)),
+    )
+    return regular, changes
+
+
+def _leave_pieces(plan: FloorPlan) -> FloorPlan:
+    """Return a plan without short pieces of wall that end loose and bound no room.
+
+    Of those that were seen from one side only: they are reveals of outer walls, leaves and sides of
+    furniture.
+    """
+    lines_m = centrelines_m(plan.walls)
+    lengths_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+    is_piece = (lengths_m < _PIECE_M) & ~plan.thick
+    is_piece &= np.asarray(plan.walls["corrected"], str) == ""
+    is_piece[plan.hosts[plan.hosts >= 0]] = False
+    outlines = overlays.unite_areas(plan.areas).boundary
+    near = overlays.buffer_shapes(outlines, 2 * moved_rooms.ON_M)
+    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
+    is_piece &= shapely.length(along) < lengths_m / 2
+    is_piece &= ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+    kept = plan.walls["wall"][~is_piece]
+    is_shown = (plan.faces["wall"] < 0) | np.isin(plan.faces["wall"], kept)
+    return replace(
+        plan,
+        walls={name: values[~is_piece] for name, values in plan.walls.items()},
+        faces={name: values[is_shown] for name, values in plan.faces.items()},
+    )
+
+
+def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
+    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
+    lines_m = centrelines_m(plan.faces)
+    for face, wall in enumerate(plan.faces["wall"].tolist()):
+        if wall in row_of:
+            lines_m[face] = moved.move_points(lines_m[face], row_of[wall])
+    return {**plan.faces, **_ends_of(lines_m)}
+
+
+def _move_rooms(plan: FloorPlan, moved: MovedWalls) -> Columns:
+    """Return rooms with their net areas: between surfaces of walls, less what columns stand on."""
+    outlines = np.array([moved_rooms.move_outline(area, moved) for area in plan.areas], object)
+    pieces = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
+    columns = overlays.unite_areas(pieces[plan.furniture["kind"] == schemas.COLUMN])
+    net = overlays.subtract_areas(outlines, columns) if len(outlines) else outlines
+    return {
+        **plan.rooms,
+        "area_m2": shapely.area(net),
+        "perimeter_m": shapely.length(outlines),
+        "geometry": np.asarray(shapely.to_wkb(outlines), object),
+    }
+
+
+def _leave_doubts(columns: Columns) -> Columns:
+    kept = {name: values for name, values in columns.items() if name not in _DOUBTS}
+    if "corrected" in kept:
+        kept["corrected"] = np.full(len(kept["corrected"]), "", object)
+    return kept
+
+
+def _ends_of(lines_m: FloatArray) -> Columns:
+    return dict(zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True))
+
+
+def _left_normals(lines_m: FloatArray) -> FloatArray:
+    ways = lines_m[:, 1] - lines_m[:, 0]
+    ways = ways / np.hypot(*ways.T)[:, None]
+    return np.column_stack([-ways[:, 1], ways[:, 0]])[:, None]
+
+
+def _turn_between(before_m: FloatArray, after_m: FloatArray) -> FloatArray:
+    one, other = (lines_m[:, 1] - lines_m[:, 0] for lines_m in (before_m, after_m))
+    cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    return np.arctan2(cross, np.einsum("ij,ij->i", one, other))

@@ -1,0 +1,86 @@
+"""Lines of walls with what is known of their places, and the gates of what may be changed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.types import BoolArray, FloatArray
+
+_SQUARE_M = 0.03  # walls off by less are straight and square, as DIN 18202 lets them be built
+_SIGMAS = 3.0  # beyond as many, a wall is known to lie where it does
+_FALLBACK_SIGMA_M = 0.01  # of a wall that none is stated of: what is usual of a real survey
+
+
+@dataclass(frozen=True, eq=False)
+class WallLines:
+    """The walls of a plan as lines.
+
+    Attributes
+    ----------
+    lines_m : (n, 2, 2) float64
+        Middle of a wall of known thickness, else the face that was seen.
+    thickness_m : (n,) float64
+        NaN where not known.
+    sigma_m : (n,) float64
+        Standard deviation of a line's place across it.
+    is_seen_from_left : (n,) bool
+        Of walls without a thickness: on which side of them their face was seen.
+    tolerance_m : float
+        Nothing is moved farther.
+    """
+
+    lines_m: FloatArray
+    thickness_m: FloatArray
+    sigma_m: FloatArray
+    is_seen_from_left: BoolArray
+    tolerance_m: float
+
+    @cached_property
+    def ways(self) -> FloatArray:
+        """Unit vectors (n, 2) along the lines."""
+        return (self.lines_m[:, 1] - self.lines_m[:, 0]) / self.lengths_m[:, None]
+
+    @cached_property
+    def lengths_m(self) -> FloatArray:
+        """Lengths (n,)."""
+        return np.hypot(*(self.lines_m[:, 1] - self.lines_m[:, 0]).T)
+
+    @cached_property
+    def angles_rad(self) -> FloatArray:
+        """Directions (n,), from -pi to pi."""
+        return np.arctan2(self.ways[:, 1], self.ways[:, 0])
+
+    @cached_property
+    def is_thick(self) -> BoolArray:
+        """Of which walls (n,) both sides are known."""
+        return np.isfinite(self.thickness_m)
+
+    @cached_property
+    def half_m(self) -> FloatArray:
+        """Half of the thickness (n,), 0 where it is not known."""
+        return np.nan_to_num(self.thickness_m) / 2
+
+    @cached_property
+    def allowed_m(self) -> FloatArray:
+        """How far each wall (n,) may be moved: as uncertain as it is, or as straight as built."""
+        return self.allow(self.sigma_m)
+
+    def allow(self, sigma_m: FloatArray) -> FloatArray:
+        """Return how far something of some standard deviation may be moved, both (n,)."""
+        return np.minimum(np.maximum(_SIGMAS * sigma_m, _SQUARE_M), self.tolerance_m)
+
+
+def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
+    """Return the walls of a plan as lines."""
+    walls = plan.walls
+    sigma_m = np.asarray(walls["sigma_offset_m"], float)
+    has_left, has_right = walls["face_left"] >= 0, walls["face_right"] >= 0
+    return WallLines(
+        centrelines_m(walls),
+        np.asarray(walls["thickness_m"], float),
+        np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
+        np.asarray(has_left | ~has_right, bool),
+        tolerance_m,
+    )

@@ -1,0 +1,67 @@
+"""Catalogues of nominal sizes: what they may say, and one line for each mistake."""
+
+import pytest
+
+from helpers.default_settings import SETTINGS
+from scanplan.errors import StageError
+from scanplan.project import stage_settings
+from scanplan.project.catalogue_file import read_catalogue
+
+GOOD = """\
+walls: [{name: thin, size_m: 0.08}, {name: thick, size_m: 0.3}]
+doors: [{name: leaf, size_m: 1}]
+windows: []
+facade_m: 0.42
+"""
+
+
+def written(folder, text):
+    path = folder / "catalogue.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_a_catalogue_gives_sizes_by_name(tmp_path):
+    read = read_catalogue(written(tmp_path, GOOD))
+    assert read == {
+        "walls": {"thin": 0.08, "thick": 0.3},
+        "doors": {"leaf": 1.0},
+        "windows": {},
+        "facade_m": 0.42,
+    }
+
+
+def test_ours_is_read_where_none_is_given_and_its_contents_are_settings():
+    ours = read_catalogue(None)
+    assert ours["walls"] and ours["doors"] and ours["windows"]
+    assert stage_settings.select_presentation(SETTINGS)["catalogue"] == ours
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "named"),
+    [
+        ("facade_m: 0.42\n", "", "facade_m"),
+        ("windows: []", "windows: []\nroofs: []", "roofs"),
+        ("windows: []", "windows: 3", "windows"),
+        ("size_m: 0.08", "size_m: 8", "walls, entry 1"),
+        ("size_m: 0.08", "size_m: .nan", "walls, entry 1"),
+        ("size_m: 0.08", "size_m: true", "walls, entry 1"),
+        ("size_m: 0.08", "size_m: '0.08'", "walls, entry 1"),
+        ("size_m: 0.3", "size_m: 0.08", "walls, entry 2"),
+        ("name: thick", "name: thin", "walls, entry 2"),
+        ("name: thick", "name: ''", "walls, entry 2"),
+        ("size_m: 1}", "size_m: 1, colour: red}", "doors, entry 1"),
+        ("[{name: leaf, size_m: 1}]", "[1.0]", "doors, entry 1"),
+        ("facade_m: 0.42", "facade_m: 0", "facade_m"),
+    ],
+)
+def test_a_mistake_is_named_with_file_and_entry(tmp_path, old, new, named):
+    path = written(tmp_path, GOOD.replace(old, new, 1))
+    with pytest.raises(StageError) as raised:
+        read_catalogue(path)
+    assert str(path) in str(raised.value) and named in str(raised.value)
+
+
+def test_a_catalogue_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(StageError, match="does not exist"):
+        read_catalogue(tmp_path / "none.yaml")

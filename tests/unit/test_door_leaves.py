@@ -1,0 +1,68 @@
+"""How doors open on the regular drawing, by leaves that were seen standing open."""
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers import floorplan_making
+from scanplan.exports.drafting.leaves import draw_swing, find_leaves
+from scanplan.exports.sheet.marks import Symbol, flatten
+from scanplan.exports.sheet.symbols import symbol_paths
+
+# a wall of 0.2 m along y = 0, a door from x = 1 to 2
+DOOR = Symbol("door", np.array([[1.0, 0.0], [2.0, 0.0]]), 0.2, "door-0", "")
+
+
+def leaf(x, y, to_x, to_y):
+    return np.array([[[x, y], [to_x, to_y]]], float)
+
+
+@pytest.mark.parametrize(
+    ("seen", "tip"),
+    [
+        # hinged at either jamb, to either side: the tip of a leaf at right angles to the wall
+        (leaf(1, 0.05, 1, 0.95), (1, 1.1)),
+        (leaf(2, 0.95, 2, 0.05), (2, 1.1)),
+        (leaf(1, -0.05, 1.2, -0.9), (1, -1.1)),
+        (leaf(2, -0.05, 1.8, -0.9), (2, -1.1)),
+    ],
+)
+def test_a_door_swings_as_its_leaf_stood(seen, tip):
+    swing = draw_swing(DOOR, seen)
+    assert swing.kind == "swing" and swing.width_m == pytest.approx(1)
+    opened, way = (flatten(path) for path in symbol_paths(swing))
+    # from the face of the wall at the jamb
+    np.testing.assert_allclose(opened[-1], tip, atol=1e-9)
+    np.testing.assert_allclose(opened[0], [tip[0], np.sign(tip[1]) * 0.1], atol=1e-9)
+    # to the other jamb, a quarter around the hinge
+    np.testing.assert_allclose(way[[0, -1]], [tip, [3 - tip[0], opened[0][1]]], atol=1e-9)
+    np.testing.assert_allclose(np.hypot(*(way - opened[0]).T), 1, atol=1e-9)
+
+
+def test_a_wide_door_has_two_leaves():
+    wide = Symbol("door", np.array([[1.0, 0.0], [3.0, 0.0]]), 0.2, "door-0", "")
+    swing = draw_swing(wide, leaf(3, 0, 3, 0.95))
+    assert swing.block == "SWING-2"
+    tips = [flatten(path)[-1] for path in symbol_paths(swing)][::2]
+    np.testing.assert_allclose(tips, [[1, 1.1], [3, 1.1]], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    "seen",
+    [
+        leaf(1, 0, 1.9, 0.0),  # shut
+        leaf(1.5, 0.1, 1.5, 1.0),  # at no jamb
+        leaf(1, 0, 1, 0.4),  # too short
+        np.empty((0, 2, 2)),
+    ],
+)
+def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
+    assert draw_swing(DOOR, seen).kind == "doorway"
+
+
+def test_leaves_are_middle_lines_of_their_outlines():
+    outline = shapely.box(0, 0, 0.04, 0.9)
+    furniture = floorplan_making.furniture([outline], "leaf")
+    ends_m = find_leaves(furniture)[0]
+    np.testing.assert_allclose(sorted(ends_m.tolist()), [[0.02, 0.0], [0.02, 0.9]])
+    assert find_leaves(floorplan_making.furniture()).shape == (0, 2, 2)

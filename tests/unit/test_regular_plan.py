@@ -1,0 +1,247 @@
+"""Plans made regular: what is straightened, what is not, and what goes along."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from helpers import floorplan_making
+from scanplan.exports.drafting.directions import find_main_directions
+from scanplan.exports.drafting.nominal_sizes import choose_sizes
+from scanplan.exports.drafting.regular_plan import ASSUMED, MEASURED, DraftSettings, draft_plan
+from scanplan.plan.floorplan import centrelines_m
+
+SETTINGS = DraftSettings(
+    tolerance_m=0.05, walls_m=(0.1, 0.2), doors_m=(0.9, 1.0), windows_m=(1.2,), facade_m=0.3
+)
+SIGMA_M = 0.004
+END_COLUMNS = ("x0_m", "y0_m", "x1_m", "y1_m")
+
+
+def turned(line, degrees):
+    """Return a line (x0, y0, x1, y1) turned about its middle."""
+    ends = np.array(line, float).reshape(2, 2)
+    middle, angle = ends.mean(axis=0), np.radians(degrees)
+    matrix = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return tuple(((ends - middle) @ matrix.T + middle).ravel())
+
+
+def plan_of(rows, sigma_m: object = SIGMA_M):
+    """Return a plan of walls (line, thickness): no faces are looked at."""
+    walls = floorplan_making.walls([(line, thick, 0, 1, "observed") for line, thick in rows])
+    sigmas_m = np.broadcast_to(np.asarray(sigma_m, float), len(rows)).copy()
+    return floorplan_making.plan(
+        walls=walls | {"sigma_offset_m": sigmas_m},
+        rooms=floorplan_making.rooms([]),
+        openings=floorplan_making.openings([]),
+    )
+
+
+def angle_deg(plan, wall):
+    x, y = np.diff(centrelines_m(plan.walls)[wall], axis=0)[0]
+    return float(np.degrees(np.arctan2(y, x)))
+
+
+# two long walls at right angles, which say what is square; what is tried stands apart from them
+FRAME = [((0, 0, 20, 0), 0.2), ((0, 0, 0, 20), 0.2)]
+TRIED = (8, 10, 12, 10)
+
+
+@pytest.mark.parametrize(
+    ("off_deg", "sigma_m", "is_square"),
+    [
+        # 4 m long: an end is off by 17 mm, which is as walls are built
+        (0.5, SIGMA_M, True),
+        (12.0, SIGMA_M, False),
+        # 44 mm: more than three times its uncertainty, and then less
+        (1.25, SIGMA_M, False),
+        (1.25, 0.016, True),
+        # 105 mm: as uncertain, but beyond the tolerance
+        (3.0, 0.1, False),
+    ],
+)
+def test_a_wall_is_straightened_where_what_is_known_of_it_allows(off_deg, sigma_m, is_square):
+    walls = [*FRAME, (turned(TRIED, off_deg), 0.1)]
+    regular, changes = draft_plan(plan_of(walls, [SIGMA_M, SIGMA_M, sigma_m]), SETTINGS)
+    assert angle_deg(regular, 2) == pytest.approx(0 if is_square else off_deg, abs=1e-6)
+    assert changes.n_square == 2 + is_square
+    assert regular.walls["turned_deg"][2] == pytest.approx(-off_deg * is_square, abs=1e-6)
+    # about its middle: half of its length times the sine
+    moved_m = 2 * np.sin(np.radians(off_deg)) if is_square else 0
+    assert regular.walls["moved_m"][2] == pytest.approx(moved_m, abs=1e-6)
+
+
+def test_halfway_between_two_directions_is_one_too():
+    walls = [*FRAME, (turned(TRIED, 45.3), 0.1)]
+    assert angle_deg(draft_plan(plan_of(walls), SETTINGS)[0], 2) == pytest.approx(45, abs=1e-6)
+
+
+def test_two_pieces_of_a_wall_lie_in_one_line_the_surer_one_moving_less():
+    pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 10.03, 11, 10.03), 0.1)]
+    sigmas_m = [SIGMA_M, SIGMA_M, 0.005, 0.01]
+    regular, changes = draft_plan(plan_of([*FRAME, *pieces], sigmas_m), SETTINGS)
+    # the mean, weighed by 1 / 0.005^2 and 1 / 0.01^2: a fifth of the way
+    y_m = centrelines_m(regular.walls)[2:, :, 1]
+    np.testing.assert_allclose(y_m, 10.006, atol=1e-6)
+    np.testing.assert_allclose(regular.walls["moved_m"][2:], [0.006, 0.024], atol=1e-6)
+    assert changes.n_through == 2 and changes.moved_m == pytest.approx(0.024, abs=1e-6)
+
+
+def test_pieces_of_another_thickness_are_flush():
+    # left sides at 10.05 and 10.06 m; right ones 9.95 and 9.86 m
+    pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 9.96, 11, 9.96), 0.2)]
+    regular, _ = draft_plan(plan_of([*FRAME, *pieces]), SETTINGS)
+    y_m = centrelines_m(regular.walls)[2:, 0, 1]
+    half_m = regular.walls["thickness_m"][2:] / 2
+    assert (y_m + half_m) == pytest.approx([10.055, 10.055], abs=1e-6)
+
+
+def test_a_step_that_is_known_stays():
+    pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 10.04, 11, 10.04), 0.1)]
+    regular, changes = draft_plan(plan_of([*FRAME, *pieces]), SETTINGS)
+    assert centrelines_m(regular.walls)[2:, 0, 1] == pytest.approx([10.0, 10.04])
+    assert changes.n_through == 0
+
+
+def test_thickness_is_nominal_where_it_is_near():
+    walls = [*FRAME, (TRIED, 0.112), ((8, 15, 12, 15), 0.15)]
+    regular, changes = draft_plan(plan_of(walls), SETTINGS)
+    assert regular.walls["thickness_m"] == pytest.approx([0.2, 0.2, 0.1, 0.15])
+    assert regular.walls["thickness_changed_m"][2] == pytest.approx(-0.012)
+    # each side by half of it
+    assert regular.walls["moved_m"][2] == pytest.approx(0.006)
+    assert (changes.n_nominal, changes.thickness_m) == (3, pytest.approx(0.012))
+
+
+def test_of_two_sizes_that_may_be_that_is_taken_which_the_building_has():
+    measured_m = np.array([0.1, 0.1, 0.1, 0.1075])
+    near_m = np.full(4, 0.02)
+    chosen_m = choose_sizes(measured_m, near_m / 4, near_m, (0.1, 0.115), np.ones(4))
+    assert chosen_m.tolist() == [0.1, 0.1, 0.1, 0.1]
+    assert np.isnan(choose_sizes(measured_m, near_m / 4, near_m, (), np.ones(4))).all()
+
+
+def test_the_main_direction_is_that_of_most_walls():
+    angles_rad = np.radians([10.0, 100.2, 190.0, 55.0, 12.0])
+    assert np.degrees(find_main_directions(angles_rad, np.array([4, 4, 4, 1, 1.0]))) == (
+        pytest.approx([10.0])
+    )
+    # a wing with a third of the weight has its own
+    wings_rad = np.radians([0.0, 90.0, 30.0, 120.0])
+    mains_deg = np.degrees(find_main_directions(wings_rad, np.array([2.0, 2, 1, 1])))
+    assert mains_deg == pytest.approx([0.0, 30.0])
+
+
+def test_no_wall_no_change():
+    regular, changes = draft_plan(plan_of([]), SETTINGS)
+    assert len(regular.walls["wall"]) == changes.n_walls == 0 and changes.moved_m == 0
+
+
+def test_what_is_regular_stays_but_for_what_is_assumed():
+    drawn = floorplan_making.plan()
+    regular, changes = draft_plan(drawn, SETTINGS)
+    assert (changes.moved_m, changes.turned_deg) == pytest.approx((0, 0), abs=1e-8)
+    assert changes.width_m == pytest.approx(0, abs=1e-8)
+    assert shapely.equals_exact(regular.areas, drawn.areas, 1e-8).all()
+    # the east wall was seen from inside: 7.1 m is its face
+    assert regular.walls["thickness_from"].tolist() == [MEASURED, ASSUMED, *[MEASURED] * 4]
+    assert centrelines_m(regular.walls)[1, :, 0] == pytest.approx([7.25, 7.25])
+    assert regular.walls["thickness_m"][1] == 0.3
+    # with its corners: from the lower edge of the south wall to the upper one of the north wall
+    assert shapely.union_all(regular.bodies).bounds == pytest.approx((-0.2, -0.2, 7.4, 3.2))
+    assert not {"verify", "p_true", "doubt"} & set(regular.walls)
+
+
+def test_rooms_follow_walls_and_leave_neither_gap_nor_overlap():
+    # the wall between the rooms is 20 mm to the east, 20 mm thicker, and turned by half a degree
+    line = turned((4.07, -0.1, 4.07, 3.1), 0.5)
+    walls = [*floorplan_making.WALLS]
+    walls[5] = (line, 0.11, *walls[5][2:])
+    left = shapely.LineString(np.array(line).reshape(2, 2)).parallel_offset(0.055, "left")
+    right = shapely.LineString(np.array(line).reshape(2, 2)).parallel_offset(0.055, "right")
+    cut = [shapely.get_x(shapely.intersection(side, shapely.LineString([(0, y), (9, y)])))
+           for side in (left, right) for y in (0, 3)]  # fmt: skip
+    west = shapely.Polygon([(0, 0), (cut[0], 0), (cut[1], 3), (0, 3)])
+    east = shapely.Polygon([(cut[2], 0), (7.1, 0), (7.1, 3), (cut[3], 3)])
+    drawn = floorplan_making.plan(
+        walls=floorplan_making.walls(walls), rooms=floorplan_making.rooms([west, east])
+    )
+    regular, _ = draft_plan(drawn, SETTINGS)
+    x_m = float(centrelines_m(regular.walls)[5, 0, 0])
+    assert centrelines_m(regular.walls)[5, :, 0] == pytest.approx([x_m, x_m])
+    expected = [shapely.box(0, 0, x_m - 0.05, 3), shapely.box(x_m + 0.05, 0, 7.1, 3)]
+    assert shapely.hausdorff_distance(regular.areas, expected) == pytest.approx([0, 0], abs=1e-6)
+    assert regular.rooms["area_m2"] == pytest.approx([shape.area for shape in expected])
+
+
+def test_an_opening_is_in_its_wall_and_of_a_size_of_the_catalogue():
+    rows = [(0, 1.0, 0, 1.88), (-0.1, 1.0, -0.1, 2.05)]
+    openings = floorplan_making.openings(
+        [(rows[0], 5, "door", 0.0, 2.0, 0, 1), (rows[1], 4, "door", 0.0, 2.0, 0, -1)]
+    )
+    regular, changes = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
+    # in the middle of its wall, and by 10 mm wider on both sides; 1.05 m is near to nothing
+    assert centrelines_m(regular.openings)[0] == pytest.approx(
+        np.array([[4.05, 0.99], [4.05, 1.89]])
+    )
+    assert regular.openings["width_m"] == pytest.approx([0.9, 1.05])
+    assert changes.width_m == pytest.approx(0.02)
+
+
+def test_short_pieces_of_wall_at_no_room_are_left_out_and_counted():
+    stub = ((8.0, 1.0, 8.0, 1.4), np.nan, 0, -1, "observed")
+    drawn = floorplan_making.plan(walls=floorplan_making.walls([*floorplan_making.WALLS, stub]))
+    regular, changes = draft_plan(drawn, SETTINGS)
+    assert 6 not in regular.walls["wall"] and changes.n_left_out == 1
+    # one that a person drew stays
+    corrected = drawn.walls["corrected"].copy()
+    corrected[6] = "added"
+    by_hand = replace(drawn, walls={**drawn.walls, "corrected": corrected})
+    assert draft_plan(by_hand, SETTINGS)[1].n_left_out == 0
+
+
+jitters = st.lists(st.floats(-0.012, 0.012), min_size=24, max_size=24)
+
+
+def jittered(offsets_m, sigma_m=SIGMA_M):
+    walls = floorplan_making.walls()
+    for row in range(6):
+        for number, column in enumerate(END_COLUMNS):
+            walls[column][row] += offsets_m[4 * row + number]
+    return floorplan_making.plan(walls=walls | {"sigma_offset_m": np.full(6, sigma_m)})
+
+
+@given(jitters, st.floats(0.0, 0.05), st.floats(0.001, 0.1))
+@settings(max_examples=40, deadline=None)
+def test_nothing_is_moved_farther_than_it_may(offsets_m, tolerance_m, sigma_m):
+    drawn = jittered(offsets_m, sigma_m)
+    regular, changes = draft_plan(drawn, replace(SETTINGS, tolerance_m=tolerance_m))
+    limit_m = min(tolerance_m, max(0.03, 3 * sigma_m)) + 1e-5
+    assert changes.moved_m <= limit_m
+    for wall, thick_m in ((0, 0.2), (5, 0.1)):
+        before, after = (centrelines_m(p.walls)[wall] for p in (drawn, regular))
+        grown_m = abs(regular.walls["thickness_m"][wall] - thick_m) / 2
+        lines = shapely.LineString(before), shapely.LineString(after)
+        middle = lines[1].interpolate(0.5, normalized=True)
+        assert lines[0].distance(middle) + grown_m <= limit_m
+    assert abs(regular.openings["width_changed_m"]).max() <= tolerance_m + 1e-9
+
+
+@given(jitters)
+@settings(max_examples=25, deadline=None)
+def test_what_has_been_made_regular_is_regular(offsets_m):
+    once, _ = draft_plan(jittered(offsets_m), SETTINGS)
+    again, changes = draft_plan(once, SETTINGS)
+    assert changes.moved_m < 1e-6 and changes.width_m < 1e-6
+    assert shapely.equals_exact(once.areas, again.areas, 1e-6).all()
+
+
+def test_the_same_plan_gives_the_same_bytes():
+    drawn = jittered(np.random.default_rng(1).uniform(-0.01, 0.01, 24))
+    one, other = (draft_plan(drawn, SETTINGS)[0] for _ in range(2))
+    for table in ("walls", "openings", "rooms", "faces"):
+        for column, values in getattr(one, table).items():
+            np.testing.assert_array_equal(values, getattr(other, table)[column])
