@@ -79,6 +79,17 @@ def test_halfway_between_two_directions_is_one_too():
     assert angle_deg(draft_plan(plan_of(walls), SETTINGS)[0], 2) == pytest.approx(45, abs=1e-6)
 
 
+def test_a_building_out_of_square_is_left_so():
+    # 4 m long, off by 0.3 degrees: 10 mm, less than walls are built off by, but 2.6 times sigma
+    crooked = [(turned((8, y, 12, y), 0.3), 0.1) for y in (10, 12, 14, 16)]
+    # of less than its sigma nobody knows
+    maybe = (turned((8, 18, 12, 18), 0.1), 0.1)
+    regular, changes = draft_plan(plan_of([*FRAME, *crooked, maybe]), SETTINGS)
+    turned_deg = [angle_deg(regular, wall) for wall in range(7)]
+    assert turned_deg == pytest.approx([0, 90, *[0.3] * 4, 0], abs=1e-6)
+    assert changes.n_square == 3
+
+
 def test_two_pieces_of_a_wall_lie_in_one_line_the_surer_one_moving_less():
     pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 10.03, 11, 10.03), 0.1)]
     sigmas_m = [SIGMA_M, SIGMA_M, 0.005, 0.01]

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.workflow
 DATASET = ("--configfile", TINY, "floor/selected.bag.yaml", "--config", "dataset=floor")
 PLANS = {"walls": schemas.PLAN_WALLS, "openings": schemas.OPENINGS, "rooms": schemas.ROOMS}
 READERS = {
-    *("validate_plan", "plan_next_visit", "export_plan", "export_files"),
+    *("validate_plan", "plan_next_visit", "export_plan", "export_presentation", "export_files"),
     *("draw_figures", "write_report"),
 }
 

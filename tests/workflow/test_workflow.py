@@ -34,7 +34,7 @@ def project(project_root, tmp_path_factory):
 
 PLANNED = {
     *("assemble_plan", "validate_plan", "plan_next_visit"),
-    *("export_plan", "export_files"),
+    *("export_plan", "export_presentation", "export_files"),
     *("draw_figures", "evaluate_plan"),
 }
 CHOSEN = {"extract_chosen_walls"} | PLANNED
@@ -172,7 +172,7 @@ def test_a_setting_of_one_order_reruns_no_other(project, change, methods):
     ("helper", "rules"),
     [
         ("selection/hulls", {"build_hulls"} | AFTER_ORDERS),
-        ("exports/dxf", {"export_plan"}),
+        ("exports/dxf", {"export_plan", "export_presentation"}),
         ("exports/data/mesh", {"export_files"}),
         ("lab/evaluation/length_metrics", EVALUATED | {"evaluate_plan"}),
         ("lab/evaluation/pose_errors", {"evaluate_poses", "evaluate_plan"} | EVALUATED),

@@ -130,9 +130,9 @@ def choose_page(
 
     Every sheet, lying or upright, has the largest of the usual scales at which it holds the plan.
     Of A3 and A4 the first is taken whose room the plan fills well enough, else that which it fills
-    best. Larger sheets are taken where rooms would be too small on these for words to go into them,
-    and ever smaller scales where they are on all. Tables are broken off a row or two alone only
-    where the scale would otherwise be smaller.
+    best. Where rooms would be too small on these for words to go into them, the smallest sheet is
+    taken on which they are not, and ever smaller scales where they are on all. Tables are broken
+    off a row or two alone only where the scale would otherwise be smaller.
 
     Parameters
     ----------
@@ -154,10 +154,11 @@ def choose_page(
     for readable in (_READABLE, *scales):
         found = [page for page in pages if page.scale <= readable]
         small = [page for page in found if page.name in _SMALL]
-        good = [page for page in small or found if _fills(page, extent_m) >= _ENOUGH]
-        if found:
-            best = max(small or found[:1], key=lambda page: _fills(page, extent_m))
-            return good[0] if good else best
+        if found and not small:
+            return found[0]
+        good = [page for page in small if _fills(page, extent_m) >= _ENOUGH]
+        if small:
+            return good[0] if good else max(small, key=lambda page: _fills(page, extent_m))
     largest = list(SIZES_MM)[-1]
     size = SIZES_MM[largest]
     page = _fill_page(Page(largest, size, _SCALES[-1], 0, turn_deg, middle_m), blocks)
