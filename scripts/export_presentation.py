@@ -1,9 +1,10 @@
 """Write the plan as a regular drawing that is handed on: sheet, CAD, and what was changed."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from scanplan.exports import drawing, dxf, svg
-from scanplan.exports.drafting.presentation import compose_presentation
+from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.title import summarise_survey
@@ -54,12 +55,14 @@ def export_presentation(
     )
     regular, changes = draft_plan(measured, drafting)
     turn_deg = None if settings["turn"] else 0.0
+    overview = compose_overview(measured, regular, facts, turn_deg=turn_deg)
+    facts = replace(facts, of=1 if overview is None else 2)
     sheet = compose_presentation(measured, regular, changes, facts, turn_deg=turn_deg)
-    figure = drawing.draw_sheet(sheet)
+    figures = [drawing.draw_sheet(page) for page in (sheet, overview) if page is not None]
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     title = f"Floor plan of {sheet.name}"
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
-    atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title))
+    atomic.write_bytes(outputs["png"], figure_files.format_png(figures[0]))
     atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
     columns = {column: regular.walls[column] for column in schemas.PRESENTATION.columns}
     tables.write_table(outputs["walls"], schemas.PRESENTATION, columns, allow_empty=True)

@@ -46,9 +46,12 @@ def test_all_files_hold_the_regular_plan(files):
     assert {"DOORWAY", "WINDOW"} <= names and not {"DOOR-1", "SWING-LEFT"} & names
     hatched = [hatch for hatch in space.query("HATCH") if hatch.dxf.solid_fill]
     assert hatched
-    words = pdf_texts(files["pdf"].read_bytes())
+    words = [*pdf_texts(files["pdf"].read_bytes())]
     assert any("made regular" in word for word in words)
     assert not any("?" in word for word in words)
+    # the second page, for who wants no dimensions
+    assert files["pdf"].read_bytes().count(b"/Type /Page /") == 2
+    assert {"2 closed rooms, 21.0 m² net.", "2 doors: 1 of 0.9 m, 1 of 1.0 m."} <= {*words}
     drawn = files["svg"].read_text()
     assert '<g class="poche">' in drawn and '<g class="verify">' not in drawn
 

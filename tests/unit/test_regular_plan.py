@@ -207,6 +207,10 @@ def test_short_pieces_of_wall_at_no_room_are_left_out_and_counted():
     drawn = floorplan_making.plan(walls=floorplan_making.walls([*floorplan_making.WALLS, stub]))
     regular, changes = draft_plan(drawn, SETTINGS)
     assert 6 not in regular.walls["wall"] and changes.n_left_out == 1
+    slit = ((1.0, -0.1, 1.05, -0.1), 0, "window", 0.9, 2.1, 0, -1)
+    openings = floorplan_making.openings([*floorplan_making.OPENINGS, slit])
+    without, counted = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
+    assert without.openings["opening"].tolist() == [0, 1, 2] and counted.n_left_out == 1
     # one that a person drew stays
     corrected = drawn.walls["corrected"].copy()
     corrected[6] = "added"

@@ -151,6 +151,9 @@ def test_results_are_said_with_their_places():
     Path("results/floor/plan").mkdir(parents=True)
     assert "results/floor/plan, not drawn" in run_outcome.describe_results("floor")
     Path("results/floor/plan/plan.pdf").touch()
+    assert "presentation" not in run_outcome.describe_results("floor")
+    Path("results/floor/plan/presentation.pdf").touch()
+    assert "results/floor/plan/presentation.pdf" in run_outcome.describe_results("floor")
     text = run_outcome.describe_results("floor")
     assert "results/floor/plan/plan.pdf" in text and "results/floor/report.html" in text
     assert "comparison" not in text

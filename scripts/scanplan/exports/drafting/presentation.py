@@ -1,6 +1,6 @@
 """The drawing that is handed on: a regular plan with solid walls, on a sheet."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +22,7 @@ from scanplan.plan.tolerances import CORNER_M
 from scanplan.store import schemas
 from scanplan.types import BoolArray, FloatArray
 
+_AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
 _PLAIN = {"gap": "passage"}
 """Openings drawn as others: what lies in them is said on the sheet of what was measured."""
 
@@ -47,10 +48,37 @@ def compose_presentation(
     facts, turn_deg
         See `composition.lay_out`.
     """
+    shown = _show_regular(measured, regular, _list_notes(changes))
+    stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
+    return lay_out(shown, stated, turn_deg=turn_deg)
+
+
+def compose_overview(
+    measured: FloorPlan,
+    regular: FloorPlan,
+    facts: SheetFacts | None = None,
+    *,
+    turn_deg: float | None = None,
+) -> Sheet | None:
+    """Compose a page of A4 without dimensions: plan, rooms, doors, areas, verdict.
+
+    None where it has more rooms than a page. The parameters are those of `compose_presentation`.
+    """
+    shown = _show_regular(measured, regular, _list_totals(regular))
+    stated = replace(facts or SheetFacts(), drawing="Overview, without dimensions", number=2, of=2)
+    try:
+        return lay_out(
+            replace(shown, is_dimensioned=False), stated, turn_deg=turn_deg, names=("A4",)
+        )
+    except ValueError:
+        return None
+
+
+def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str]) -> Shown:
     is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
     spans_m = _find_spans(regular, is_measured)
     unseen_m = floorplan.centrelines_m(regular.unseen)
-    shown = Shown(
+    return Shown(
         plan=regular,
         titled=measured,
         marks=[*_draw_marks(regular)],
@@ -61,10 +89,8 @@ def compose_presentation(
         known=None,
         beside=regular.bodies.tolist(),
         is_labelled=False,
-        notes=_list_notes(changes),
+        notes=notes,
     )
-    stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
-    return lay_out(shown, stated, turn_deg=turn_deg)
 
 
 def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
@@ -133,7 +159,7 @@ def _list_notes(changes: Changes) -> list[str]:
     """Return what has been changed of the plan, and by what rule areas are, in lines."""
     walls = say_count(changes.n_walls, "wall")
     assumed = say_count(changes.n_assumed, "wall")
-    left_out = say_count(changes.n_left_out, "short piece")
+    left_out = say_count(changes.n_left_out, "scrap")
     sentences = [
         f"Of {walls} {changes.n_square} are square to the building, {changes.n_through} in line"
         f" with others, {changes.n_nominal} of nominal thickness.",
@@ -141,10 +167,32 @@ def _list_notes(changes: Changes) -> list[str]:
         f" than {changes.turned_deg:.1f}° or thickened by more than {_in_mm(changes.thickness_m)}.",
         f"Openings widened by at most {_in_mm(changes.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (changes.n_assumed > 0),
-        f"{left_out} of wall at no room left out." * (changes.n_left_out > 0),
-        "Areas are net (NRF, DIN 277): between walls, less columns and reveals.",
+        f"{left_out} left out: short walls at no room, slits." * (changes.n_left_out > 0),
+        _AREA_RULE,
     ]
-    width_mm = Paper.COLUMN - 4 * Paper.GAP
+    return _wrap(sentences)
+
+
+def _list_totals(plan: FloorPlan) -> list[str]:
+    """Return how much floor there is and how many doors and windows, in lines."""
+    is_closed = np.asarray(plan.rooms["closed"], bool)
+    areas_m2 = np.asarray(plan.rooms["area_m2"], float)
+    kinds, widths_m = plan.openings["type"], np.asarray(plan.openings["width_m"], float)
+    sentences: list[str] = []
+    for is_of, noun, about in ((is_closed, "closed room", ""), (~is_closed, "open room", "about ")):
+        if is_of.any():
+            total = f"{about}{areas_m2[is_of].sum():.1f} m² net"
+            sentences.append(f"{say_count(int(is_of.sum()), noun)}, {total}.")
+    for kind in ("door", "window"):
+        sizes, counts = np.unique(np.round(widths_m[kinds == kind], 1), return_counts=True)
+        listed = ", ".join(f"{n} of {size:.1f} m" for size, n in zip(sizes, counts, strict=True))
+        if listed:
+            sentences.append(f"{say_count(int(counts.sum()), kind)}: {listed}.")
+    return _wrap([*sentences, _AREA_RULE])
+
+
+def _wrap(sentences: Sequence[str]) -> list[str]:
+    width_mm = Paper.COLUMN - 6 * Paper.GAP
     return [line for said in sentences for line in wrap_lines(said, Letters.SMALL, width_mm)]
 
 

@@ -15,7 +15,7 @@ from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
-from scanplan.plan.tolerances import CORNER_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray
 
@@ -57,8 +57,8 @@ class Changes:
         Walls, of these in a main direction, in one line with another, of a nominal thickness.
     moved_m, turned_deg, thickness_m, width_m : float
         The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
-    n_assumed : int
-        Walls whose thickness is assumed.
+    n_assumed, n_left_out : int
+        Walls whose thickness is assumed; short pieces of wall and slits that are not drawn.
     """
 
     n_walls: int
@@ -70,7 +70,7 @@ class Changes:
     thickness_m: float
     width_m: float
     n_assumed: int
-    n_left_out: int = 0
+    n_left_out: int
 
 
 def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan, Changes]:
@@ -80,7 +80,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     openings `width_changed_m`. All walls have a thickness; lines of those seen from one side are in
     their middle. Doubts are left out: they stand on the sheet of what was measured.
     """
-    plan = _leave_pieces(surveyed)
+    plan = _leave_scraps(surveyed)
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     adjusted = adjust_walls(walls, wanted)
@@ -123,7 +123,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         thickness_m=float(np.abs(grown_m).max(initial=0)),
         width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
         n_assumed=int((~walls.is_thick).sum()),
-        n_left_out=len(surveyed.walls["wall"]) - len(thickness_m),
+        n_left_out=_count_elements(surveyed) - _count_elements(plan),
     )
     regular = replace(
         plan,
@@ -135,11 +135,15 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     return regular, changes
 
 
-def _leave_pieces(plan: FloorPlan) -> FloorPlan:
-    """Return a plan without short pieces of wall that end loose and bound no room.
+def _count_elements(plan: FloorPlan) -> int:
+    return len(plan.walls["wall"]) + len(plan.openings["opening"])
+
+
+def _leave_scraps(plan: FloorPlan) -> FloorPlan:
+    """Return a plan without slits, and short pieces of wall that end loose and bound no room.
 
     Of those that were seen from one side only: they are reveals of outer walls, leaves and sides of
-    furniture.
+    furniture. A slit is narrower than its ends err by.
     """
     lines_m = centrelines_m(plan.walls)
     lengths_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
@@ -151,12 +155,15 @@ def _leave_pieces(plan: FloorPlan) -> FloorPlan:
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
     is_piece &= shapely.length(along) < lengths_m / 2
     is_piece &= ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+    is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
+    is_wide |= np.asarray(plan.openings["corrected"], str) != ""
     kept = plan.walls["wall"][~is_piece]
     is_shown = (plan.faces["wall"] < 0) | np.isin(plan.faces["wall"], kept)
     return replace(
         plan,
         walls={name: values[~is_piece] for name, values in plan.walls.items()},
         faces={name: values[is_shown] for name, values in plan.faces.items()},
+        openings={name: values[is_wide] for name, values in plan.openings.items()},
     )
 
 

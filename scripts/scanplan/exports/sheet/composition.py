@@ -11,7 +11,7 @@ from scanplan.exports.sheet import content, dimensions, title, words
 from scanplan.exports.sheet.labels import LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
-from scanplan.exports.sheet.paper import Page, choose_page, fill_slots
+from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page, fill_slots
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.exports.sheet.title import SheetFacts
@@ -78,6 +78,8 @@ class Shown:
         What else chains of dimensions keep off.
     is_labelled : bool
         Whether widths of openings, heights of walls and doubts stand beside them.
+    is_dimensioned : bool
+        Whether facades and rooms have dimensions.
     notes : sequence of str
         Lines of words that stand beside the legend.
     """
@@ -92,6 +94,7 @@ class Shown:
     known: BaseGeometry | None
     beside: Sequence[BaseGeometry] = ()
     is_labelled: bool = True
+    is_dimensioned: bool = True
     notes: Sequence[str] = ()
 
 
@@ -124,6 +127,7 @@ def lay_out(
     *,
     turn_deg: float | None = None,
     least_scale: int = 1,
+    names: Sequence[str] = tuple(SIZES_MM),
 ) -> Sheet:
     """Lay a drawing out on a sheet, with dimensions, words and tables.
 
@@ -136,6 +140,13 @@ def lay_out(
         sheet.
     least_scale : int
         Least denominator of its scale, as of the other sheets of a set.
+    names : sequence of str
+        Of the sheets that may be taken.
+
+    Raises
+    ------
+    ValueError
+        If none of these holds the tables.
     """
     facts = facts or SheetFacts()
     plan, marks, symbols = shown.plan, shown.marks, shown.symbols
@@ -143,7 +154,8 @@ def lay_out(
     blocks = [6, len(_list_legend(shown, marks)), len(shown.notes), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
-    page = choose_page(*extent, turn_deg, blocks, least_scale)
+    around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
+    page = choose_page(*extent, turn_deg, blocks, least_scale, names=names, around_mm=around_mm)
     # doors that swing out put the chain before them farther off: room on the other side goes there
     swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
@@ -169,11 +181,11 @@ def lay_out(
     stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
     beside += title.draw_room_table(stamps, table_slots)
     on_paper = page.place_shape(shown.uncertain)
-    drawn = _dimension(page, shown, marks, on_paper, space)
+    drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
     is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
-        for area in plan.areas
+        for area in plan.areas[: len(plan.areas) * shown.is_dimensioned]
         for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
     ]
     labels: list[Word] = []

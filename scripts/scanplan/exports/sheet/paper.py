@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -57,6 +57,8 @@ class Page:
         The plan is turned by, counterclockwise.
     middle_m : (2,) float
         Of the plan, in its turned frame.
+    around_mm : float
+        Left free around the plan.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Page:
     rows: int
     turn_deg: float
     middle_m: FloatArray
+    around_mm: float = Paper.AROUND
 
     @property
     def inner_mm(self) -> tuple[float, float, float, float]:
@@ -125,6 +128,9 @@ def choose_page(
     turn_deg: float,
     blocks: list[int],
     least_scale: int = 1,
+    *,
+    names: Sequence[str] = tuple(SIZES_MM),
+    around_mm: float = Paper.AROUND,
 ) -> Page:
     """Choose the sheet and the scale for a plan.
 
@@ -142,15 +148,22 @@ def choose_page(
         Rows of the tables that go with it; see `fill_slots`.
     least_scale : int
         Scales with a lesser denominator are not taken.
+    names : sequence of str
+        Of the sheets that may be taken, in the order of preference.
+    around_mm : float
+        Left free around the plan.
+
+    Raises
+    ------
+    ValueError
+        If the last of the sheets does not hold the tables.
     """
     extent_m = np.asarray(high_m, float) - low_m
     middle_m = (np.asarray(high_m, float) + low_m) / 2
     scales = [scale for scale in _SCALES if scale >= least_scale]
-    pages = [
-        page
-        for name in SIZES_MM
-        if (page := _fit_sheet(name, scales, turn_deg, extent_m, middle_m, blocks)) is not None
-    ]
+    empty = Page("", (0.0, 0.0), 0, 0, turn_deg, middle_m, around_mm)
+    fitting = (_fit_sheet(replace(empty, name=n), scales, extent_m, blocks) for n in names)
+    pages = [page for page in fitting if page is not None]
     for readable in (_READABLE, *scales):
         found = [page for page in pages if page.scale <= readable]
         small = [page for page in found if page.name in _SMALL]
@@ -159,33 +172,27 @@ def choose_page(
         good = [page for page in small if _fills(page, extent_m) >= _ENOUGH]
         if small:
             return good[0] if good else max(small, key=lambda page: _fills(page, extent_m))
-    largest = list(SIZES_MM)[-1]
-    size = SIZES_MM[largest]
-    page = _fill_page(Page(largest, size, _SCALES[-1], 0, turn_deg, middle_m), blocks)
+    largest = names[-1]
+    page = _fill_page(replace(empty, name=largest, size_mm=SIZES_MM[largest]), blocks)
     if page is None:
         raise ValueError(f"tables of {sum(blocks)} rows are more than a sheet holds")
     scale = math.ceil(float((1000 * extent_m / _room_mm(page)).max()))
-    return Page(largest, size, scale, page.rows, turn_deg, middle_m)
+    return replace(page, scale=scale)
 
 
 def _fit_sheet(
-    name: str,
-    scales: Sequence[int],
-    turn_deg: float,
-    extent_m: FloatArray,
-    middle_m: FloatArray,
-    blocks: list[int],
+    page: Page, scales: Sequence[int], extent_m: FloatArray, blocks: list[int]
 ) -> Page | None:
     """Return a sheet at the largest scale at which it holds a plan; None if there is none."""
-    long, short = SIZES_MM[name]
+    long, short = SIZES_MM[page.name]
     for scale in scales:
-        for size in ((long, short), (short, long)):
-            empty = Page(name, size, scale, 0, turn_deg, middle_m)
+        for size_mm in ((long, short), (short, long)):
+            empty = replace(page, size_mm=size_mm, scale=scale)
             # three rows under a head are a table, fewer look forgotten
             for least in (3, 1):
-                page = _fill_page(empty, blocks, least)
-                if page is not None and _holds(page, extent_m):
-                    return page
+                filled = _fill_page(empty, blocks, least)
+                if filled is not None and _holds(filled, extent_m):
+                    return filled
     return None
 
 
@@ -197,7 +204,7 @@ def _fills(page: Page, extent_m: FloatArray) -> float:
 def _room_mm(page: Page) -> FloatArray:
     """Return width and height that a plan may have on a page, its dimensions around it."""
     x0, y0, x1, y1 = page.drawing_mm
-    return np.array([x1 - x0, y1 - y0]) - 2 * Paper.AROUND
+    return np.array([x1 - x0, y1 - y0]) - 2 * page.around_mm
 
 
 def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
@@ -209,7 +216,7 @@ def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     for rows in range(TITLE_ROWS, most):
         places = fill_slots(find_slots(page.inner_mm, rows), blocks)
         if places is not None and all(_is_unbroken(parts, least) for parts in places):
-            return Page(page.name, page.size_mm, page.scale, rows, page.turn_deg, page.middle_m)
+            return replace(page, rows=rows)
     return None
 
 

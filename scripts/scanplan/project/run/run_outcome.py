@@ -27,9 +27,11 @@ def describe_results(name: str) -> str:
     beside = f", {compared}" if Path(compared).exists() else ""
     drawn = f"{folder}/plan/plan.pdf"
     where = f"{drawn} (also .svg, .dxf, .geojson, map.pgm)"
+    regular = f"{folder}/plan/presentation.pdf"
+    shown = f"to show  {regular} (also .svg, .png, .dxf)\n" if Path(regular).exists() else ""
     return (
         f"\n{name}\n{found}"
-        f"plan     {where if Path(drawn).exists() else f'{folder}/plan, not drawn'}\n"
+        f"plan     {where if Path(drawn).exists() else f'{folder}/plan, not drawn'}\n{shown}"
         f"report   {folder}/report.html{beside}"
     )
 
