@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
@@ -21,6 +22,7 @@ def export_presentation(
     *,
     name: str,
     settings: Settings,
+    catalogue: Mapping[str, Any],
     version: str = "",
 ) -> None:
     """Write a regular plan as SVG, PDF, PNG and DXF, and its walls as a table.
@@ -33,6 +35,8 @@ def export_presentation(
         Of `export_formats.PRESENTATION`.
     settings : dict
         See `stage_settings.select_presentation`.
+    catalogue : dict
+        See `catalogue_file.read_catalogue`.
     version : str
         Of the software, for the title block.
     """
@@ -46,7 +50,6 @@ def export_presentation(
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
         north_deg=settings["north_deg"],
     )
-    catalogue = settings["catalogue"]
     walls_m, doors_m, windows_m = (
         list(catalogue[kind].values()) for kind in ("walls", "doors", "windows")
     )
@@ -79,5 +82,6 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
+            catalogue=snakemake.params.catalogue,
             version=code_files.state_version(),
         )

@@ -181,7 +181,7 @@ def test_sheets_of_a_set_have_one_scale_and_lie_alike():
     facts = [SheetFacts(storey=name) for name in ("Ground", "First")]
     for turn, expected in ((True, 30.0), (False, 0.0)):
         sheets = compose_sheets([small, large], facts, [np.radians(-30), 0.0], turn=turn)
-        assert sheets[0].page.scale == sheets[1].page.scale == 100
+        assert sheets[0].page.scale == sheets[1].page.scale == 150
         own = [sheet.page.turn_deg for sheet in sheets]
         assert own == pytest.approx([expected - 30, expected])
     loose = compose_sheets([small, large], facts, [0.0, None], turn=True)[1]

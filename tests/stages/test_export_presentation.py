@@ -9,7 +9,7 @@ from helpers import floorplan_making
 from helpers.corrected_files import pdf_texts
 from helpers.default_settings import SETTINGS
 from scanplan.plan import planning
-from scanplan.project import export_formats, stage_settings
+from scanplan.project import catalogue_file, export_formats, stage_settings
 from scanplan.store import schemas, tables
 
 FILES = export_formats.PRESENTATION["presentation"]
@@ -24,7 +24,8 @@ def exported(folder, empty=(), **settings):
         tables.write_table(plan[table], schema, columns, allow_empty=True)
     outputs = {what: folder / file for what, file in FILES.items()}
     used = stage_settings.select_presentation(SETTINGS) | settings
-    export_presentation(plan, outputs, name="office", settings=used)
+    sizes = catalogue_file.read_catalogue(None)
+    export_presentation(plan, outputs, name="office", settings=used, catalogue=sizes)
     return outputs
 
 

@@ -47,6 +47,7 @@ def received(settings):
         "stop": select.select_section(settings, "selection", "stop"),
         "playing": select.select_section(settings, "selection", "playing"),
         "drawing": select.select_drawing(settings),
+        "presentation": select.select_presentation(settings),
         "files": select.select_files(settings),
         "cloud": select.select_section(settings, "plan", "export", "cloud"),
         "topics": select.select_topics(settings),

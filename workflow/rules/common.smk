@@ -33,7 +33,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
-from scanplan.project import building_file, export_formats, stage_settings
+from scanplan.project import building_file, catalogue_file, export_formats, stage_settings
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     CHANGES,
@@ -441,6 +441,12 @@ def files_unasked_for(wildcards):
     chosen = DATASETS[wildcards.dataset].settings["plan"]["export"]["formats"]
     files = export_formats.list_replaced(chosen)
     return [f"results/{wildcards.dataset}/{file}" for file in files]
+
+
+def nominal_sizes(wildcards):
+    """What the catalogue of the job's dataset holds: a size that changes reruns the drawing."""
+    settings = DATASETS[wildcards.dataset].settings
+    return catalogue_file.read_catalogue(settings["plan"]["export"]["catalogue"])
 
 
 def source_of_results(wildcards):

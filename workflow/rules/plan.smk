@@ -194,6 +194,7 @@ rule export_presentation:
     params:
         code=code_of("export_presentation"),
         settings=setting(stage_settings.select_presentation),
+        catalogue=nominal_sizes,
     script:
         "../../scripts/export_presentation.py"
 

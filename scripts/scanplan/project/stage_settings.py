@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import catalogue_file
 from scanplan.project.settings import merge_settings
 from scanplan.project.settings_schema import ADVANCED
 
@@ -168,18 +167,11 @@ def select_drawing(settings: Settings) -> Keywords:
 
 
 def select_presentation(settings: Settings) -> Keywords:
-    """Return the settings of `export_presentation`: what its catalogue holds, not its name.
-
-    Raises
-    ------
-    StageError
-        If the catalogue is missing or wrong.
-    """
+    """Return the settings of `export_presentation`, with the name of its catalogue."""
     export = select_section(settings, "plan", "export")
     own = {
         "north_deg": export["site"]["north_deg"],
-        "catalogue": catalogue_file.read_catalogue(export["catalogue"]),
-        "max_change_m": export["max_change_m"],
+        **{key: export[key] for key in _OF_PRESENTATION},
     }
     return _without(select_drawing(settings), ("map_cell_m",)) | own
 

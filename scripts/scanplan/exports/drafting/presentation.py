@@ -17,12 +17,13 @@ from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
-from scanplan.plan.floorplan import WAYS, FloorPlan, say_count
+from scanplan.plan.floorplan import FloorPlan, say_count
 from scanplan.plan.tolerances import CORNER_M
 from scanplan.store import schemas
 from scanplan.types import BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
+_BESIDE_M = 0.05  # from a room's outline to a pane that bounds it: which has no thickness
 _PLAIN = {"gap": "passage"}
 """Openings drawn as others: what lies in them is said on the sheet of what was measured."""
 
@@ -118,9 +119,18 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
 
 
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings of walls, and ways between rooms; a pane in no wall is furniture here."""
+    """Yield openings of walls and between rooms; a pane in no wall that bounds no room is none."""
     leaves_m = find_leaves(plan.furniture)
-    is_free = (plan.hosts < 0) & ~np.isin(np.asarray(plan.openings["type"], str), WAYS)
+    lines_m = floorplan.centrelines_m(plan.openings)
+    near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, _BESIDE_M)
+    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
+    bounds_none = shapely.length(along) < plan.openings["width_m"] / 2
+    # what lies behind the face of a wall is that wall's opening once more
+    behind = overlays.intersect_lines(
+        floorplan.line_shapes(lines_m), overlays.unite_areas(plan.bodies)
+    )
+    is_double = shapely.length(behind) > plan.openings["width_m"] / 2
+    is_free = (plan.hosts < 0) & (bounds_none | is_double)
     for symbol, is_loose in zip(content.list_symbols(plan), is_free.tolist(), strict=True):
         if is_loose:
             continue
@@ -150,6 +160,11 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     half_m = np.nan_to_num(np.asarray(plan.openings["thickness_m"], float)) / 2
     openings = floorplan.buffer_lines(spans_m[is_through], half_m[is_through])
     built = overlays.unite_areas([*plan.bodies[is_measured], *openings])
+    # with the corners that they have in common with walls that were measured
+    assumed_m = floorplan.centrelines_m(plan.walls)[~is_measured]
+    half_m = plan.walls["thickness_m"][~is_measured] / 2
+    assumed = overlays.buffer_shapes(floorplan.line_shapes(assumed_m), half_m, cap_style="square")
+    built = overlays.subtract_areas(built, overlays.unite_areas([*assumed]))
     rooms = overlays.unite_areas(plan.areas)
     near = overlays.buffer_shapes(rooms, CORNER_M, join_style="mitre")
     return overlays.intersect_areas(built, near)

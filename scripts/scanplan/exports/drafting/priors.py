@@ -18,7 +18,8 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 _MOST_TURN_RAD = np.radians(5.0)  # what is off by more is oblique, however short it is
 _LONG_M = 1.5  # a shorter wall hardly tells how square a building is
 # off by this many standard deviations in the median, the building itself is out of square: old
-# houses of the bench's tuning half are by 1.6 to 7.9, all its others and real floors by 0.1 to 1.1
+# houses of the bench's tuning half are by 1.6 to 7.9, its others by 0.1 to 1.1, but for museums
+# that have curves, by up to 2.9
 _SQUARE_SIGMAS = 1.3
 _THROUGH_M = 3.0  # between pieces of one wall: wider than the openings that part walls
 DIRECTION, THROUGH, THICKNESS = "direction", "through", "thickness"

@@ -1,0 +1,80 @@
+"""The regular drawing on its sheet: what is drawn, dimensioned and said."""
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers import floorplan_making
+from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.sheet.composition import paper_words
+from scanplan.store import schemas
+
+SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
+
+
+def composed(**tables):
+    measured = floorplan_making.plan(**tables)
+    regular, changes = draft_plan(measured, SETTINGS)
+    return compose_presentation(measured, regular, changes)
+
+
+def ground(sheet, kind):
+    """The area of the marks of a kind, holes left out."""
+    return shapely.union_all(
+        [
+            shapely.Polygon(mark.paths[0][:, :2], [path[:, :2] for path in mark.paths[1:]])
+            for mark in sheet.marks
+            if mark.kind == kind
+        ]
+    )
+
+
+def test_walls_are_solid_with_openings_cut_out_and_rooms_left_free():
+    # 7.6 x 3.4 m around, the east wall 0.3 m thick, less rooms; less two doors and a window
+    expected_m2 = 7.6 * 3.4 - 12 - 9 - 0.2 * 1.0 - 0.1 * 0.9 - 0.2 * 1.2
+    assert ground(composed(), "poche").area == pytest.approx(expected_m2, abs=1e-6)
+
+
+def test_columns_are_solid_and_furniture_is_not_drawn():
+    column = floorplan_making.furniture([shapely.box(1, 1, 1.3, 1.3)], schemas.COLUMN)
+    sheet = composed(furniture=column)
+    assert ground(sheet, "poche").intersects(shapely.Point(1.15, 1.15))
+    # net: less what it stands on
+    assert [stamp.facts["AREA"] for stamp in sheet.stamps] == ["11.9 m²", "9.0 m²"]
+    piece = composed(furniture=floorplan_making.furniture())
+    assert "furniture" not in {mark.kind for mark in piece.marks}
+
+
+def test_lengths_end_at_surfaces_that_were_measured():
+    sheet = composed()
+    lengths = {dimension.word.text for dimension in sheet.dimensions}
+    # from the outer side in the west to the room's in the east, whose wall has no known thickness
+    assert {"7.30", "3.40", "1.20"} <= lengths
+    assert not any(text.startswith("~") for text in lengths)
+
+
+def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
+    rows = [
+        ((0, 0, 4, 0), -1, "glass", 0.0, 2.5, 0, -1),
+        ((1, 1, 3, 1.5), -1, "glass", 0, 2.5, 0, -1),
+    ]
+    sheet = composed(walls=floorplan_making.walls([]), openings=floorplan_making.openings(rows))
+    assert [symbol.element for symbol in sheet.symbols] == ["glass-0"]
+
+
+def test_what_was_changed_and_how_areas_are_measured_is_said():
+    said = " ".join(word.text for word in paper_words(composed()))
+    assert "6 are square" in said and "0 mm" in said and "DIN 277" in said
+
+
+def test_the_overview_is_a_page_of_a4_without_dimensions():
+    measured = floorplan_making.plan()
+    regular, _ = draft_plan(measured, SETTINGS)
+    page = compose_overview(measured, regular)
+    assert page is not None and page.page.name == "A4" and page.dimensions == []
+    # more rooms than A4 has rows
+    tiles = [shapely.box(x, y, x + 0.9, y + 0.9) for x in range(20) for y in range(20)]
+    many, _ = draft_plan(floorplan_making.plan(rooms=floorplan_making.rooms(tiles)), SETTINGS)
+    assert compose_overview(measured, many) is None
+    assert np.array_equal(many.rooms["room"], np.arange(400))
