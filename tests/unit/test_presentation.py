@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 from helpers import floorplan_making
+from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import paper_words
@@ -78,3 +79,31 @@ def test_the_overview_is_a_page_of_a4_without_dimensions():
     many, _ = draft_plan(floorplan_making.plan(rooms=floorplan_making.rooms(tiles)), SETTINGS)
     assert compose_overview(measured, many) is None
     assert np.array_equal(many.rooms["room"], np.arange(400))
+
+
+def facing(line, side):
+    """A wall of 6 m seen from its left or right alone."""
+    left, right = (0, -1) if side == "left" else (-1, 0)
+    return (line, np.nan, left, right, "observed")
+
+
+@pytest.mark.parametrize(
+    ("rows", "facades"),
+    [
+        # seen from the north: nothing to the south, and then another wall 3 m or 5 m away
+        ([facing((0, 0, 6, 0), "left")], [True]),
+        ([facing((0, 0, 6, 0), "left"), facing((0, -3, 6, -3), "right")], [False, False]),
+        ([facing((0, 0, 6, 0), "left"), facing((0, -5, 6, -5), "right")], [True, True]),
+        # a core of 6 m x 6 m that nobody saw, all around seen from outside
+        ([facing((0, 0, 6, 0), "right"), facing((6, 0, 6, 6), "right"),
+          facing((6, 6, 0, 6), "right"), facing((0, 6, 0, 0), "right")], [False] * 4),
+    ],
+)  # fmt: skip
+def test_facades_have_nothing_of_the_building_behind(rows, facades):
+    drawn = floorplan_making.plan(
+        walls=floorplan_making.walls(rows),
+        rooms=floorplan_making.rooms([]),
+        openings=floorplan_making.openings([]),
+    )
+    assert find_facades(drawn).tolist() == facades
+    assert find_facades(floorplan_making.plan()).tolist() == [False, True, *[False] * 4]

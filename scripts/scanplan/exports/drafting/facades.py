@@ -1,8 +1,11 @@
 """Which walls that were seen from one side are facades: nothing of the building is behind them."""
 
+from dataclasses import replace
+
 import numpy as np
 import shapely
 
+from scanplan.exports import envelope
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.types import BoolArray
 
@@ -12,10 +15,10 @@ _SHARES = np.linspace(0.05, 0.95, 10)  # of places along a wall, its corners lef
 
 
 def find_facades(plan: FloorPlan) -> BoolArray:
-    """Return which walls (n,) have neither wall nor room behind the most of their face.
+    """Return which walls (n,) have nothing of the building behind the most of their face.
 
-    None of which both sides were seen. What is seen through a window is no part of the building: it
-    has no walls that were seen.
+    None of which both sides were seen. Of the building are walls, rooms, and what these enclose:
+    ground that no scan shows. What is seen through a window alone is not: no wall of it was seen.
     """
     lines_m = centrelines_m(plan.walls)
     along_m = lines_m[:, 1] - lines_m[:, 0]
@@ -30,4 +33,7 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     tree = shapely.STRtree([*line_shapes(lines_m), *plan.areas])
     way, _ = tree.query(ways, predicate="intersects")
     is_blocked = np.isin(np.arange(len(ways)), way).reshape(len(lines_m), len(_SHARES))
+    no_floor = {name: values[:0] for name, values in plan.free.items()}
+    building = envelope.outline_plan(replace(plan, free=no_floor))
+    is_blocked |= shapely.contains_xy(building, ways_m[:, :, 1, 0], ways_m[:, :, 1, 1])
     return ~plan.thick & (is_blocked.mean(axis=1) < 1 / 2)
