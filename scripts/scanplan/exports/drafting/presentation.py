@@ -10,9 +10,10 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports.drafting.leaves import draw_swing, find_leaves
 from scanplan.exports.drafting.regular_plan import MEASURED, Changes
 from scanplan.exports.sheet import content
-from scanplan.exports.sheet.composition import Sheet, Shown, lay_out
-from scanplan.exports.sheet.lettering import wrap_lines
+from scanplan.exports.sheet.composition import Sheet, lay_out
+from scanplan.exports.sheet.lettering import clean_text, wrap_lines
 from scanplan.exports.sheet.marks import Mark, Symbol, straight
+from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
@@ -96,9 +97,9 @@ def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str])
 
 def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
     for row, area in enumerate(plan.areas):
-        facts = {"name": plan.room_names[row], **content.facts_of("room", plan.rooms, row)}
-        number = plan.rooms["room"][row]
-        yield content.draw_area("room", area, f"room-{number}", plan.room_names[row], facts)
+        name, number = clean_text(plan.room_names[row]), plan.rooms["room"][row]
+        facts = {"name": name, **content.facts_of("room", plan.rooms, row)}
+        yield content.draw_area("room", area, f"room-{number}", name, facts)
     unseen_m = floorplan.centrelines_m(plan.unseen)
     for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
         yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")

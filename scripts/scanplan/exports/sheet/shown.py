@@ -1,0 +1,77 @@
+"""What a sheet shows of a plan, before it is laid out on paper."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.exports.sheet import content
+from scanplan.exports.sheet.marks import Mark, Symbol
+from scanplan.geometry import overlays
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What a sheet shows of a plan.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+        Whose rooms are stamped and dimensioned.
+    titled : FloorPlan
+        Whose contents, doubts and accuracy the title block states: as measured.
+    marks, symbols : lists
+        Map frame.
+    uncertain : shapely geometry
+        Lengths that end there are about so long.
+    built : shapely geometry
+        What chains of dimensions run along, beside rooms that are closed.
+    spans_m : (m, 2, 2) float
+        Of openings, where chains measure them.
+    known : shapely geometry or None
+        What of the building ends where it is known to; None of all that is dimensioned.
+    beside : sequence of shapely geometries
+        What else chains of dimensions keep off.
+    is_labelled : bool
+        Whether widths of openings, heights of walls and doubts stand beside them.
+    is_dimensioned : bool
+        Whether facades and rooms have dimensions.
+    notes : sequence of str
+        Lines of words that stand beside the legend.
+    """
+
+    plan: FloorPlan
+    titled: FloorPlan
+    marks: list[Mark] = field(repr=False)
+    symbols: list[Symbol] = field(repr=False)
+    uncertain: BaseGeometry
+    built: BaseGeometry
+    spans_m: FloatArray
+    known: BaseGeometry | None
+    beside: Sequence[BaseGeometry] = ()
+    is_labelled: bool = True
+    is_dimensioned: bool = True
+    notes: Sequence[str] = ()
+
+
+def show_measured(plan: FloorPlan) -> Shown:
+    """Return what a sheet shows of a plan as it was measured, with all doubts."""
+    marks = [*content.draw_walls(plan), *content.draw_axes(plan), *content.draw_doubts(plan)]
+    marks += content.draw_furniture(plan)
+    symbols = content.list_symbols(plan)
+    spans_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
+    half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
+    built = overlays.unite_areas([*plan.bodies, *floorplan.buffer_lines(spans_m, half_m)])
+    known = overlays.unite_areas(plan.known_bodies)
+    return Shown(plan, plan, marks, symbols, _find_uncertain(plan), built, spans_m, known)
+
+
+def _find_uncertain(plan: FloorPlan) -> BaseGeometry:
+    """Return the spans of rooms' outlines that were not seen, and walls that are to be verified."""
+    unseen_m = floorplan.centrelines_m(plan.unseen)
+    doubtful = plan.bodies[content.is_doubtful(plan.walls)]
+    return overlays.unite_shapes([*floorplan.line_shapes(unseen_m), *doubtful])
