@@ -6,7 +6,7 @@ from typing import Any
 
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
-from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan_files
@@ -50,12 +50,7 @@ def export_presentation(
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
         north_deg=settings["north_deg"],
     )
-    walls_m, doors_m, windows_m = (
-        list(catalogue[kind].values()) for kind in ("walls", "doors", "windows")
-    )
-    drafting = DraftSettings(
-        settings["max_change_m"], walls_m, doors_m, windows_m, catalogue["facade_m"]
-    )
+    drafting = make_draft_settings(settings["max_change_m"], catalogue)
     regular, changes = draft_plan(measured, drafting)
     turn_deg = None if settings["turn"] else 0.0
     overview = compose_overview(measured, regular, facts, turn_deg=turn_deg)

@@ -12,6 +12,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py next_visit FOLDER [SURVEY ...]
        run.py changes FOLDER [SURVEY ...]
        run.py sheets RESULTS FOLDER [SURVEY ...]
+       run.py presentation RESULTS TRUTHS [DRIVE ...]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
        run.py overlays [COUNT [FIRST SEED]]
@@ -69,6 +70,10 @@ sensors and in another frame, and counts what is told rightly; surveys are kept 
 `sheets` counts words that lie on others on the sheets of surveys that are registered in RESULTS,
 and `ids` the elements that keep their GlobalIds over twenty changes of settings. Their plans are
 made with this code, and kept in FOLDER.
+
+`presentation` holds regular drawings of simulated drives that are planned in RESULTS against their
+truths, beside what was measured: rooms, walls, directions, and the share of walls whose thickness
+is the true one.
 
 `odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
 scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
@@ -230,6 +235,13 @@ def bench_ids(results: str, folder: str, *names: str) -> None:
     exchange_bench.bench_ids(Path(results), Path(folder), names, SETTINGS)
 
 
+def bench_presentation(results: str, truths: str, *names: str) -> None:
+    """Regular drawings of simulated drives against their truths."""
+    import presentation_bench
+
+    presentation_bench.bench(Path(results), Path(truths), names, SETTINGS)
+
+
 def bench_odometry(folder: str, *names: str) -> None:
     """Poses of drives without a localiser against the truth."""
     import odometry_bench
@@ -273,6 +285,7 @@ def compare_realistic(before: str, after: str) -> None:
 
 
 APART: dict[str, Callable[..., None]] = {
+    "presentation": bench_presentation,
     "realistic": bench_realistic,
     "compare_realistic": compare_realistic,
     "ablate": ablate_rules,

@@ -1,7 +1,8 @@
 """The regular plan: that of a survey as a draughtsman draws it, and what he changed."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import shapely
@@ -45,6 +46,17 @@ class DraftSettings:
     doors_m: Sequence[float]
     windows_m: Sequence[float]
     facade_m: float
+
+
+def make_draft_settings(max_change_m: float, catalogue: Mapping[str, Any]) -> DraftSettings:
+    """Return settings with the sizes of a catalogue, see `catalogue_file.read_catalogue`."""
+    return DraftSettings(
+        max_change_m,
+        list(catalogue["walls"].values()),
+        list(catalogue["doors"].values()),
+        list(catalogue["windows"].values()),
+        catalogue["facade_m"],
+    )
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,115 @@
+"""Regular drawings of simulated drives against their truths, beside what was measured."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from scanplan.exports.drafting.regular_plan import MEASURED, draft_plan, make_draft_settings
+from scanplan.lab.evaluation.scores import drawn_plan, plan_scores, score_files
+from scanplan.lab.evaluation.scores.score_files import Placed
+from scanplan.plan import floorplan_files
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.project import catalogue_file
+from scanplan.types import Columns, FloatArray, IntArray, Settings
+
+_SHOWN = (
+    *("room_iou", "wall_correctness_010", "wall_completeness_010", "thickness_error_m"),
+    *("angle_deg", "true_thickness"),
+)
+_LONG_M = 1.0  # a shorter wall has hardly a direction
+_NEAR_M = 0.1  # as far as a wall counts as drawn right
+_BESIDE_DEG = 5.0  # of the true wall that a drawn one is held against
+_ALIKE_M = 0.0015  # of a thickness that is the true one: what tables are rounded to, and a little
+_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture")
+
+
+def bench(results: Path, truths: Path, names: Sequence[str], settings: Settings) -> None:
+    """Print measures of each drive's plan, as measured and made regular, and their means.
+
+    Parameters
+    ----------
+    results : Path
+        Folder of the drives' results, with registrations and plans.
+    truths : Path
+        Folder of folders with truth.geojson and truth_poses.tum.
+    names : sequence of str
+        Drives; all that have both where none is named.
+    settings : dict
+        Default settings.
+    """
+    export = settings["plan"]["export"]
+    sizes = catalogue_file.read_catalogue(export["catalogue"])
+    drafting = make_draft_settings(export["max_change_m"], sizes)
+    found = names or sorted(p.parent.name for p in truths.glob("*/truth.geojson"))
+    rows: list[list[dict[str, float]]] = []
+    for name in found:
+        if not (results / name / "plan/free.parquet").is_file():
+            continue
+        truth = truths / name
+        placed = score_files.place_results(
+            results / name, truth / "truth.geojson", truth / "truth_poses.tum"
+        )
+        files = {table: results / name / f"plan/{table}.parquet" for table in _TABLES}
+        plan = floorplan_files.read_floorplan(files, name)
+        regular, changes = draft_plan(plan, drafting)
+        measured = score_files.read_plan(results / name)
+        rows.append([_measure(t, placed) for t in (measured, _replace(measured, regular))])
+        print(f"{name}: {_format(rows[-1])}, moved by {1000 * changes.moved_m:.0f} mm", flush=True)
+    means = [
+        {key: float(np.nanmean([row[number][key] for row in rows])) for key in _SHOWN}
+        for number in (0, 1)
+    ]
+    print(f"mean of {len(rows)}: {_format(means)}")
+
+
+def _format(pair: Sequence[Mapping[str, float]]) -> str:
+    measured, regular = pair
+    return ", ".join(f"{key} {measured[key]:.4f} -> {regular[key]:.4f}" for key in _SHOWN)
+
+
+def _replace(tables: Mapping[str, Columns], regular: FloorPlan) -> dict[str, Columns]:
+    """Return a plan's tables as those of its regular one, assumed thickness left out."""
+    walls = regular.walls
+    known_m = np.where(walls["thickness_from"] == MEASURED, walls["thickness_m"], np.nan)
+    changed = {"walls": {**walls, "thickness_m": known_m}, "openings": regular.openings}
+    return {**tables, "faces": regular.faces, "rooms": regular.rooms, **changed}
+
+
+def _measure(tables: Mapping[str, Columns], placed: Placed) -> dict[str, float]:
+    scored = plan_scores.score_plan(tables, placed.motion, placed.scene, placed.seen)
+    plan, scene = drawn_plan.place_plan(tables, placed.motion), placed.scene
+    true_faces_m = np.concatenate([scene.inner_m, scene.outer_m])
+    off_deg, lengths_m, _, _ = _pair(plan.faces_m, true_faces_m)
+    known = np.isfinite(plan.thickness_m)
+    _, walls_m, rows, of = _pair(plan.walls_m[known], scene.walls_m)
+    thick_m, true_m = plan.thickness_m[known][rows], scene.thickness_m[of]
+    is_true = (thick_m >= true_m.min(axis=1) - _ALIKE_M) & (
+        thick_m <= true_m.max(axis=1) + _ALIKE_M
+    )
+    return {
+        **scored.measures,
+        "angle_deg": _mean(off_deg, lengths_m),
+        "true_thickness": _mean(is_true, walls_m),
+    }
+
+
+def _pair(
+    lines_m: FloatArray, true_m: FloatArray
+) -> tuple[FloatArray, FloatArray, IntArray, IntArray]:
+    """Return of lines with a true one at their middle: turned by, length, row, the other's row."""
+    ways, true_ways = (line[:, 1] - line[:, 0] for line in (lines_m, true_m))
+    lengths_m, true_lengths_m = (np.hypot(*way.T) for way in (ways, true_ways))
+    angles, true_angles = (np.degrees(np.arctan2(*way.T[::-1])) for way in (ways, true_ways))
+    off_deg = np.abs((angles[:, None] - true_angles + 90) % 180 - 90)
+    middles = np.asarray(shapely.points(lines_m.mean(axis=1)), object)
+    apart_m = shapely.distance(middles[:, None], np.asarray(shapely.linestrings(true_m), object))
+    is_near = (apart_m < _NEAR_M) & (off_deg < _BESIDE_DEG) & (true_lengths_m > _LONG_M)
+    rows = np.flatnonzero(is_near.any(axis=1) & (lengths_m > _LONG_M))
+    of = np.where(is_near, apart_m, np.inf)[rows].argmin(axis=1)
+    return off_deg[rows, of], lengths_m[rows], rows, of
+
+
+def _mean(values: FloatArray, weights: FloatArray) -> float:
+    return float(np.average(values, weights=weights)) if len(values) else np.nan
