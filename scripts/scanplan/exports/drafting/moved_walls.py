@@ -75,6 +75,7 @@ def join_ends(walls: WallLines, lines_m: FloatArray, thickness_m: FloatArray) ->
     apart_m, reach_m = _measure_gaps(walls)
     own = np.arange(len(apart_m)) // 2
     is_met = (apart_m <= reach_m) & _is_turned(walls.ways)[own]
+    is_met &= ~walls.is_bent & ~walls.is_bent[own][:, None]
     nearest = np.where(is_met, apart_m - walls.half_m, np.inf)
     drawn_half_m = thickness_m / 2
     for end in np.flatnonzero(is_met.any(axis=1)).tolist():

@@ -71,7 +71,7 @@ def want_regular(walls: WallLines, sizes_m: tuple[float, ...]) -> Wanted:
     In a building that is out of square as a whole those alone are turned that may well be square:
     off by less than their standard deviation.
     """
-    weights = walls.lengths_m / walls.sigma_m
+    weights = ~walls.is_bent * walls.lengths_m / walls.sigma_m
     mains_rad = find_main_directions(walls.angles_rad, weights)
     if len(mains_rad) == 0:
         nothing = np.zeros(len(weights))
@@ -79,7 +79,7 @@ def want_regular(walls: WallLines, sizes_m: tuple[float, ...]) -> Wanted:
     turn_rad = find_nearest_directions(walls.angles_rad, mains_rad)
     # about its middle both ends of a wall are moved alike
     swung_m = walls.lengths_m / 2 * np.abs(np.sin(turn_rad))
-    is_nearly = np.abs(turn_rad) <= _MOST_TURN_RAD
+    is_nearly = (np.abs(turn_rad) <= _MOST_TURN_RAD) & ~walls.is_bent
     is_telling = is_nearly & (walls.lengths_m >= _LONG_M)
     is_near = is_nearly & (swung_m <= walls.allowed_m)
     off_sigmas = (swung_m / walls.sigma_m)[is_telling]
@@ -87,7 +87,8 @@ def want_regular(walls: WallLines, sizes_m: tuple[float, ...]) -> Wanted:
         is_near &= swung_m <= walls.sigma_m
     sigma_m = np.sqrt(2) * walls.sigma_m
     nominal_m = choose_sizes(
-        walls.thickness_m, sigma_m, walls.allow(sigma_m), sizes_m, walls.lengths_m
+        *(np.where(walls.is_bent, np.nan, walls.thickness_m), sigma_m),
+        *(walls.allow(sigma_m), sizes_m, walls.lengths_m),
     )
     return Wanted(np.where(is_near, turn_rad, 0.0), is_near, nominal_m)
 

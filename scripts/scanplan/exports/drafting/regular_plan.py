@@ -89,8 +89,8 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     """Return a plan with regular walls, its faces, rooms and openings with them, and the changes.
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
-    openings `width_changed_m`. All walls have a thickness; lines of those seen from one side are in
-    their middle. Doubts are left out: they stand on the sheet of what was measured.
+    openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one side
+    are in their middle. Curved walls stay as they are. Doubts are left out: they stand on the sheet of what was measured.
     """
     plan = _leave_scraps(surveyed)
     walls = gather_lines(plan, settings.tolerance_m)
@@ -103,14 +103,17 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         max(settings.facade_m, plan.assumed_thickness_m),
         plan.assumed_thickness_m,
     )
+    # of curved walls what is behind the face is drawn as on the measured sheet
+    behind_m = np.where(walls.is_bent, np.nan, behind_m)
     thickness_m = np.where(walls.is_thick, walls.thickness_m + grown_m, behind_m)
     # in the middle of what is behind the face
     side = np.where(walls.is_seen_from_left, -1.0, 1.0) * ~walls.is_thick
-    middles_m = moved.lines_m + _left_normals(moved.lines_m) * (side * behind_m / 2)[:, None, None]
+    off_m = np.nan_to_num(side * behind_m / 2)
+    middles_m = moved.lines_m + _left_normals(moved.lines_m) * off_m[:, None, None]
     drawn_m = moved_walls.join_ends(walls, middles_m, thickness_m)
     openings = moved_openings.move_openings(
         plan.openings,
-        plan.hosts,
+        np.where(np.append(walls.is_bent, False)[plan.hosts], -1, plan.hosts),
         drawn_m,
         {"door": settings.doors_m, "window": settings.windows_m},
         settings.tolerance_m,

@@ -27,6 +27,8 @@ class WallLines:
         Standard deviation of a line's place across it.
     is_seen_from_left : (n,) bool
         Of walls without a thickness: on which side of them their face was seen.
+    is_bent : (n,) bool
+        Which are chords of curved walls: these stay.
     tolerance_m : float
         Nothing is moved farther.
     """
@@ -35,6 +37,7 @@ class WallLines:
     thickness_m: FloatArray
     sigma_m: FloatArray
     is_seen_from_left: BoolArray
+    is_bent: BoolArray
     tolerance_m: float
 
     @cached_property
@@ -82,5 +85,6 @@ def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
         np.asarray(walls["thickness_m"], float),
         np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
         np.asarray(has_left | ~has_right, bool),
+        plan.wall_shapes.is_bent,
         tolerance_m,
     )
