@@ -78,7 +78,9 @@ def bench(folder: Path, *, coefficients: Path, figure: Path) -> None:
         plain = fit_tables(halves["tuning"])
         tempers = choose_tempers(halves["real"], plain)
         left_out = _leave_out(halves["tuning"], tempers)
-        fitted[name] = soften_models(plain, tempers) | choose_limits(left_out.values())
+        fitted[name] = soften_models(plain, tempers) | choose_limits(
+            left_out.values(), len(halves["tuning"])
+        )
         limits = (fitted[name]["most"], fitted[name]["level"])
         charts[name, "tuning"] = {table: _limit(j, *limits) for table, j in left_out.items()}
         for half in ("reporting", "real"):
@@ -114,15 +116,25 @@ def rate_floor(results: Path, floor: Floor) -> Rated:
     placed = scoring.place_floor(results, recorded, with_points=False)
     elements = score_files.score_results(placed).elements
     print(f"confidence, {results.name}", flush=True)
-    return Rated(
-        floor,
-        confidence.is_planar(plan),
-        describe_elements(plan, validation),
-        {
-            table: _find_right(elements, number, getattr(plan, table)[number])
-            for table, number in floorplan.NUMBERS.items()
-        },
+    right = {
+        table: _find_right(elements, number, getattr(plan, table)[number])
+        for table, number in floorplan.NUMBERS.items()
+    }
+    right["faces"][_find_further_chords(plan)] = np.nan
+    return Rated(floor, confidence.is_planar(plan), describe_elements(plan, validation), right)
+
+
+def _find_further_chords(plan: floorplan.FloorPlan) -> BoolArray:
+    """Return which faces (n,) are chords of a side of a curved wall that another stands for."""
+    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
+    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    centre_m = np.column_stack(
+        [np.append(plan.walls[name].astype(float), np.nan)[host] for name in ("arc_x_m", "arc_y_m")]
     )
+    off_m = floorplan.centrelines_m(plan.faces).mean(axis=1) - centre_m
+    is_outer = off_m[:, 0] * plan.faces["nx"] + off_m[:, 1] * plan.faces["ny"] > 0
+    _, first = np.unique(2 * host + is_outer, return_index=True)
+    return np.isfinite(off_m[:, 0]) & ~np.isin(np.arange(len(host)), first)
 
 
 def _find_right(elements: Columns, kind: str, numbers: IntArray) -> FloatArray:
@@ -230,16 +242,19 @@ def _leave_out(tuning: Sequence[Rated], tempers: Mapping[str, float]) -> dict[st
     return {table: _join([part[table] for part in parts]) for table in floorplan.NUMBERS}
 
 
-def choose_limits(left_out: Iterable[Judged]) -> dict[str, float]:
+def choose_limits(left_out: Iterable[Judged], n_drives: int) -> dict[str, float]:
     """Return the level below which elements are flagged, and what no probability is above.
 
     Probabilities of walls and of rooms mean the same: one level misses the fewest wrong elements.
     The surest of what was left out are right so often, and what a fit says beyond is not known.
+    Elements of one drive err together, so that n drives without an error show no more than that
+    (n + 1) of n + 2 have none (Laplace's rule of succession).
     """
     judged = _join(list(left_out))
     level = float(np.quantile(judged.p_true[judged.right], _RIGHT_FLAGGED))
     is_surest = judged.p_true >= np.quantile(judged.p_true, 1 - _SUREST_SHARE)
-    return {"level": round(level, 3), "most": round(float(judged.right[is_surest].mean()), 3)}
+    most = min(float(judged.right[is_surest].mean()), (n_drives + 1) / (n_drives + 2))
+    return {"level": round(level, 3), "most": round(most, 3)}
 
 
 def _judge(found: Sequence[Rated], models: Mapping[str, Any]) -> dict[str, Judged]:

@@ -66,7 +66,8 @@ def test_the_level_leaves_a_ninth_of_a_hundred_right_ones_and_nothing_is_surer_t
     p_true = np.linspace(0, 1, 1000)
     right = np.ones(1000, bool)
     right[-10:] = False
-    limits = confidence_bench.choose_limits([Judged(p_true, right, np.zeros(1000, bool))])
+    judged = [Judged(p_true, right, np.zeros(1000, bool))]
+    limits = confidence_bench.choose_limits(judged, 40)
     assert limits["level"] == pytest.approx(0.09 * 0.99, abs=0.002)
     assert limits["most"] == 0.9
 
