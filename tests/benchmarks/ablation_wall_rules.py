@@ -24,9 +24,6 @@ FACES: dict[str, Rule] = {
     ),
     "groups joined": make_rule("plan.faces.segment_groups:_join", give_back(1)),
     "lines refitted": make_rule("plan.faces.intervals:refit_to_points", give_back(0)),
-    "lines that lead into glass": make_rule(
-        "plan.faces.intervals:_leads_into_glass", answer(value=False)
-    ),
     "looking beyond ends": make_rule(
         "plan.faces.intervals:look_beyond",
         give_back(0),
@@ -42,15 +39,6 @@ FACES: dict[str, Rule] = {
         give_back(0),
         "plan.faces.intervals:_trim_ends",
         "plan.faces.intervals:_usual_end_m",
-    ),
-    "glass by lost rays": make_rule(
-        "rays.face_observation:_find_lost",
-        answer(np.empty((0, 2))),
-        "rays.face_observation:_find_lost",
-        "rays.expected_returns",
-    ),
-    "framed panes": make_rule(
-        "rays.face_observation:FaceObservation._is_framed", answer(value=True)
     ),
     "points a metre": make_rule("plan.faces.tracing:_FaceSelection._find_dense", give_back(1)),
     "scans that show a face": make_rule(

@@ -25,7 +25,8 @@ def make_results(folder, predicted=0.75):
     rooms = some(schemas.ROOMS, 2, room=np.array([1, 2], np.int32))
     rooms |= {"area_m2": np.array([10.0, 2.5]), "closed": np.array([True, False])}
     rooms["geometry"] = shapely.to_wkb(np.array([shapely.box(0, 0, 5, 2), shapely.box(5, 0, 6, 2)]))
-    walls = some(schemas.PLAN_WALLS, 1, verify=np.array([True]))
+    straight = dict.fromkeys(("arc_x_m", "arc_y_m", "arc_radius_m"), np.array([math.nan]))
+    walls = some(schemas.PLAN_WALLS, 1, verify=np.array([True]), **straight)
     openings = some(schemas.OPENINGS, 3, opening=np.arange(3, dtype=np.int32))
     openings["type"] = np.array(["door", "window", "door"], object)
     rays = some(schemas.VALIDATION, 1, share=np.array([predicted]))
