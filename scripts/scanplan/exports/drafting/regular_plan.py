@@ -89,8 +89,9 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     """Return a plan with regular walls, its faces, rooms and openings with them, and the changes.
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
-    openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one side
-    are in their middle. Curved walls stay as they are. Doubts are left out: they stand on the sheet of what was measured.
+    openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one
+    side are in their middle. Curved walls stay as they are. Doubts are left out: they stand on the
+    sheet of what was measured.
     """
     plan = _leave_scraps(surveyed)
     walls = gather_lines(plan, settings.tolerance_m)
