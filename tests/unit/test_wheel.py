@@ -185,7 +185,9 @@ with log.log_to_file({str(tmp_path / "stage.log")!r}):
 def test_formats_without_their_library_are_left_out_of_the_defaults_and_told(monkeypatch):
     monkeypatch.setattr(export_formats, "find_spec", lambda library: None)
     defaults = read_defaults(ROOT / "config/config.yaml", SCHEMA)
-    assert defaults["plan"]["export"]["formats"] == ["glb", "gpkg", "csv", "json", "tum"]
+    assert defaults["plan"]["export"]["formats"] == [
+        *("glb", "gpkg", "csv", "json", "tum", "presentation")
+    ]
     (told,) = export_formats.tell_lacking()
     assert told.startswith("plan/plan.ifc: ") and "'scanplan[ifc]'" in told
 

@@ -26,7 +26,8 @@ def find_main_directions(angles_rad: FloatArray, weights: FloatArray) -> FloatAr
 
     Examples
     --------
-    >>> find_main_directions(np.radians([0.0, 90.5, 180.0, 37.0]), np.ones(4)).tolist()
+    >>> lengths_m = np.array([2.0, 2.0, 2.0, 1.0])
+    >>> find_main_directions(np.radians([0.0, 90.5, 180.0, 37.0]), lengths_m).tolist()
     [0.0]
     """
     left = np.asarray(weights, float).copy()
