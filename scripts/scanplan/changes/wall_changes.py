@@ -21,13 +21,16 @@ _OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the
 _MEETS_M = 0.3  # of a wall's end and another: as far as a plan draws them apart
 _LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what they err by
 
+_BOW_M = 0.05  # of a piece of a curved wall: half of what rays are off by at a wall
+_COSINE = math.cos(math.radians(20))  # of faces of one piece: those of others are turned
+
 _MATCHED, _IN_OPENING, _PASSED, _HIT, _UNKNOWN = range(5)
 """What another survey shows of a cell of a wall."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Wall:
-    """A wall in the common frame, in cells along its line.
+    """A wall in the common frame, or a piece of a curved one, in cells along its line.
 
     Attributes
     ----------
@@ -139,14 +142,26 @@ def _list_walls(survey: Survey) -> Iterator[_Wall]:
     plan = survey.plan
     left_m, right_m = plan.sides_m
     rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
-    lines_m = survey.motion.move(centrelines_m(plan.walls))
     for row, number in enumerate(plan.walls["wall"].tolist()):
-        line, length_m = ray_cells.line_between(lines_m[row])
         is_thick = bool(plan.thick[row])
         # of one seen from one side the line is that of its face
         half_m = float(left_m[row] + right_m[row]) / 2 if is_thick else 0.0
-        n_cells = ray_cells.count_cells((0.0, length_m))
-        yield _Wall(number, line, half_m, n_cells, float(rated[row]), _is_built_in(plan, row))
+        is_built_in = _is_built_in(plan, row)
+        for ends_m in survey.motion.move(_cut_lines(plan, row)):
+            line, length_m = ray_cells.line_between(ends_m)
+            n_cells = ray_cells.count_cells((0.0, length_m))
+            yield _Wall(number, line, half_m, n_cells, float(rated[row]), is_built_in)
+
+
+def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
+    """Return the line (1, 2, 2) of a wall; of a curved one pieces (k, 2, 2) that hardly bow."""
+    shapes = plan.wall_shapes
+    if not shapes.is_bent[row]:
+        return shapes.lines_m[row][None]
+    longest_m = math.sqrt(8 * _BOW_M * float(plan.walls["arc_radius_m"][row]))
+    n_pieces = math.ceil(float(plan.lengths_m[row]) / longest_m)
+    corners_m, _ = shapes.place_along(row, np.linspace(0, 1, n_pieces + 1))
+    return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
 
 
 def _is_built_in(plan: FloorPlan, row: int) -> bool:
@@ -170,7 +185,8 @@ def _find_shifts(wall: _Wall, shifts: FaceShifts) -> _Shifts:
     shift_m, sigma_m = np.full((2, 2, wall.n_cells), np.nan)
     number = np.full(wall.n_cells, -1, np.int64)
     n_returns = np.zeros(wall.n_cells, np.int64)
-    rows = np.flatnonzero(shifts.faces.wall[pairs.a] == wall.number)
+    turned = np.abs(shifts.faces.normal[pairs.a] @ wall.line.normal)
+    rows = np.flatnonzero((shifts.faces.wall[pairs.a] == wall.number) & (turned >= _COSINE))
     # the longest last, so that it stands where several lie over one another
     for row in rows[np.argsort(pairs.length_m[rows], kind="stable")].tolist():
         face = int(pairs.a[row])
