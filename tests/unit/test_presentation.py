@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
-from helpers import floorplan_making
+from helpers import floorplan_making, quarter_disc
 from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import paper_words
+from scanplan.geometry.arcs import trace_arc
+from scanplan.plan.floorplan import centrelines_m
 from scanplan.store import schemas
 
 SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
@@ -107,3 +109,22 @@ def test_facades_have_nothing_of_the_building_behind(rows, facades):
     )
     assert find_facades(drawn).tolist() == facades
     assert find_facades(floorplan_making.plan()).tolist() == [False, True, *[False] * 4]
+
+
+@pytest.mark.parametrize("thickness_m", [0.2, np.nan])
+def test_curved_walls_stay_as_measured_and_are_drawn_in_arcs(thickness_m):
+    first, *others = quarter_disc.WALLS
+    walls = [(first[0], thickness_m, *first[2:]), *others]
+    jambs_m = trace_arc(np.array(first[0]).reshape(2, 2), np.zeros(2))[[4, 7]]
+    door = (tuple(jambs_m.ravel()), 0, "door", 0.0, 2.0, 0, -1)
+    measured = quarter_disc.quarter(walls, openings=floorplan_making.openings([door]))
+    regular, changes = draft_plan(measured, SETTINGS)
+    for name in ("x0_m", "y0_m", "x1_m", "y1_m", "thickness_m", *schemas.ARC):
+        np.testing.assert_array_equal(regular.walls[name][0], measured.walls[name][0])
+    assert centrelines_m(regular.openings)[0] == pytest.approx(jambs_m)
+    assert changes.moved_m == changes.width_m == 0
+    sheet = compose_presentation(measured, regular, changes)
+    solid = [path for mark in sheet.marks if mark.kind == "poche" for path in mark.bent_paths]
+    # about a quarter of a circle, but for the door
+    assert max(abs(path[:, 2]).max() for path in solid) > np.tan(np.radians(60) / 4)
+    assert all(np.isfinite(path).all() for path in solid)

@@ -99,7 +99,7 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
     for row, area in enumerate(plan.areas):
         name, number = clean_text(plan.room_names[row]), plan.rooms["room"][row]
         facts = {"name": name, **content.facts_of("room", plan.rooms, row)}
-        yield content.draw_area("room", area, f"room-{number}", name, facts)
+        yield content.draw_area("room", area, f"room-{number}", name, facts, of=plan)
     unseen_m = floorplan.centrelines_m(plan.unseen)
     for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
         yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")
@@ -112,7 +112,7 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         shape = overlays.subtract_areas(overlays.subtract_areas(bodies, cut_out), above)
         above = overlays.unite_each(above, shape)
         for number, part in enumerate(content.list_polygons(shape)):
-            yield content.draw_area(kind, part, f"{kind}-{number}", "wall")
+            yield content.draw_area(kind, part, f"{kind}-{number}", "wall", of=plan)
     is_column = plan.furniture["kind"] == schemas.COLUMN
     outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)[is_column])
     for number, outline in zip(plan.furniture["furniture"][is_column], outlines, strict=True):
@@ -145,13 +145,15 @@ def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
     """Return openings (m, 2, 2) in the middle of walls, or in the surface that was seen."""
     spans_m = floorplan.centrelines_m(plan.openings)
     lines_m = floorplan.centrelines_m(plan.walls)
+    # the line of a curved wall without a thickness is its surface
+    half_m = np.nan_to_num(np.asarray(plan.walls["thickness_m"], float)) / 2
     from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
     for row, host in enumerate(plan.hosts.tolist()):
         if host >= 0 and not is_measured[host]:
             x, y = lines_m[host, 1] - lines_m[host, 0]
             left = np.array([-y, x]) / np.hypot(x, y)
             side = 1 if from_left[host] else -1
-            spans_m[row] += side * plan.walls["thickness_m"][host] / 2 * left
+            spans_m[row] += side * half_m[host] * left
     return spans_m
 
 
@@ -163,7 +165,7 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     built = overlays.unite_areas([*plan.bodies[is_measured], *openings])
     # with the corners that they have in common with walls that were measured
     assumed_m = floorplan.centrelines_m(plan.walls)[~is_measured]
-    half_m = plan.walls["thickness_m"][~is_measured] / 2
+    half_m = np.nan_to_num(np.asarray(plan.walls["thickness_m"], float))[~is_measured] / 2
     assumed = overlays.buffer_shapes(floorplan.line_shapes(assumed_m), half_m, cap_style="square")
     built = overlays.subtract_areas(built, overlays.unite_areas([*assumed]))
     rooms = overlays.unite_areas(plan.areas)

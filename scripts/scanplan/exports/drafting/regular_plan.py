@@ -90,8 +90,9 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
     openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one
-    side are in their middle. Curved walls stay as they are. Doubts are left out: they stand on the
-    sheet of what was measured.
+    side are in their middle. Curved walls stay as they are: those seen from one side have no
+    thickness, and their line is their face. Doubts are left out: they stand on the sheet of what
+    was measured.
     """
     plan = _leave_scraps(surveyed)
     walls = gather_lines(plan, settings.tolerance_m)
@@ -129,8 +130,10 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "thickness_changed_m": grown_m,
         "thickness_from": np.where(walls.is_thick, MEASURED, ASSUMED).astype(object),
     }
-    kinds = [{wall for p in adjusted.held if p.kind == kind for wall in p.walls}
-             for kind in (DIRECTION, THROUGH, THICKNESS)]  # fmt: skip
+    kinds = [
+        {wall for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
+        for kind in (DIRECTION, THROUGH, THICKNESS)
+    ]
     changes = Changes(
         len(thickness_m),
         *map(len, kinds),
