@@ -1,4 +1,4 @@
-"""Curved walls of two surveys compared: along their arcs, not along the chords between their ends."""
+"""Curved walls of two surveys compared: along their arcs, not between their ends."""
 
 import math
 

@@ -46,7 +46,7 @@ def list_drawn(compared: Comparison, tables: Sequence[str]) -> Iterator[DrawnCha
             if change.verdict == MOVED and change.table != "opening":
                 after = shapely.affinity.translate(area, *change.moved_m)
             elif change.verdict == MOVED:
-                after = _cover_other(change, compared.b)
+                after = _cover_opening(change.number_b, compared.b)
             yield DrawnChange(change, before, after)
 
 
@@ -62,20 +62,15 @@ def draw_unchanged(compared: Comparison, drawn: Sequence[DrawnChange]) -> BaseGe
 
 def _cover(change: Change, survey: Survey) -> BaseGeometry:
     """Return the area of a change: that of the wall's body beside its stretch."""
+    number = change.number_a if change.number_a >= 0 else change.number_b
     if change.table == "wall":
-        number = change.number_a if change.number_a >= 0 else change.number_b
         row = int(np.flatnonzero(survey.plan.walls["wall"] == number)[0])
         beside = overlays.buffer_shapes(change.shape, _ACROSS_M, cap_style="flat")
         body = overlays.intersect_areas(survey.place(survey.plan.bodies[row]), beside)
         return body if not body.is_empty else _widen(change.shape, _LEAST_M)
     if change.table == "opening":
-        number = change.number_a if change.number_a >= 0 else change.number_b
         return _cover_opening(number, survey)
     return change.shape
-
-
-def _cover_other(change: Change, survey: Survey) -> BaseGeometry:
-    return _cover_opening(change.number_b, survey)
 
 
 def _cover_opening(number: int, survey: Survey) -> BaseGeometry:

@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.change_table import summarise_tie, warn_of_others
 from scanplan.changes.comparison import Comparison
-from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, Change
+from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, Change
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.sheet import content, title
 from scanplan.exports.sheet.composition import Sheet
@@ -138,7 +138,7 @@ def _list_values(compared: Comparison, facts: ComparedFacts, page: Page) -> list
     ]
     n_pieces = sum(c.table == "furniture" for c in likely)
     contents = ", ".join(counts) or "no wall, opening or room"
-    doubtful = sum(c.verdict in _STYLES and c.p < 0.9 for c in compared.changes)
+    doubtful = sum(c.verdict in CHANGES and not c.is_change for c in compared.changes)
     tied = warn_of_others(compared.tie) or summarise_tie(compared.tie)
     return [
         [("Project", facts.project or names[0], 2), ("Drawing", "Changes", 1)],
