@@ -9,7 +9,7 @@ import shapely
 
 from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import WAYS, centrelines_m
 from scanplan.plan.tolerances import END_M
@@ -61,22 +61,12 @@ def compare_openings(a: Survey, b: Survey) -> list[Change]:
         for i, j in rows
         if _is_known(of_a[i]) or _is_known(of_b[j])
     ]
-    lone_a = [of_a[i] for i in range(len(of_a)) if i not in {i for i, _ in rows}]
-    lone_b = [of_b[j] for j in range(len(of_b)) if j not in {j for _, j in rows}]
+    rows_a, rows_b = {i for i, _ in rows}, {j for _, j in rows}
+    lone_a = [one for i, one in enumerate(of_a) if i not in rows_a]
+    lone_b = [one for j, one in enumerate(of_b) if j not in rows_b]
     gone = [_judge_alone(opening, a, b) for opening in lone_a if _is_known(opening)]
-    new = [_judge_alone(opening, b, a) for opening in lone_b if _is_known(opening)]
-    return [*paired, *gone, *map(_turn_round, new)]
-
-
-def _turn_round(change: Change) -> Change:
-    return replace(
-        change,
-        number_a=change.number_b,
-        number_b=change.number_a,
-        kind_a=change.kind_b,
-        kind_b=change.kind_a,
-        verdict=NEW if change.verdict == GONE else change.verdict,
-    )
+    new = [_judge_alone(opening, b, a).turned() for opening in lone_b if _is_known(opening)]
+    return [*paired, *gone, *new]
 
 
 def _is_known(opening: _Opening) -> bool:

@@ -198,14 +198,11 @@ class Later:
         Rays go through, and hardly any ends there.
     is_hit : bool
         Rays end there, and fewer go through.
-    n_passes, n_hits : int64
     passing, ending : Looks' rows of rays at what was solid.
     """
 
     is_passed: BoolArray
     is_hit: BoolArray
-    n_passes: IntArray
-    n_hits: IntArray
     passing: IntArray
     ending: IntArray
 
@@ -247,7 +244,7 @@ def compare_looks(first: Looks, other: Looks) -> Later:
     is_passed = (n_passes >= FEW) & (n_hits <= STRAY_SHARE * (n_passes + n_hits)) & ~is_denied
     is_hit = (n_hits > 0) & (n_hits > n_passes)
     at_solid = [told[solid[told[:, 0], told[:, 1]]] for told in (other.passing, other.ending)]
-    return Later(is_passed, is_hit, n_passes, n_hits, *at_solid)
+    return Later(is_passed, is_hit, *at_solid)
 
 
 def line_between(ends_m: FloatArray) -> tuple[Line, float]:

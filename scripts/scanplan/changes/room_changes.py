@@ -55,6 +55,7 @@ def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Chang
     areas_a, areas_b = (np.array([s.place(area) for area in s.plan.areas], object) for s in (a, b))
     shared = _share_areas(areas_a, areas_b)
     pairs = _pair_most(shared, _ALIKE)
+    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
     numbers_a, numbers_b = a.plan.rooms["room"], b.plan.rooms["room"]
     found = [
         _judge_pair(int(numbers_a[i]), int(numbers_b[j]), areas_a[i], areas_b[j], walls)
@@ -63,14 +64,14 @@ def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Chang
     found += [
         _judge_alone(int(numbers_a[i]), areas_a[i], b.free, walls)
         for i in range(len(areas_a))
-        if i not in {i for i, _ in pairs}
+        if i not in rows_a
     ]
     new = [
-        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, walls)
+        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, walls).turned()
         for j in range(len(areas_b))
-        if j not in {j for _, j in pairs}
+        if j not in rows_b
     ]
-    return [*found, *map(_turn_round, new)]
+    return [*found, *new]
 
 
 def _judge_pair(
@@ -133,10 +134,11 @@ def compare_furniture(a: Survey, b: Survey) -> list[Change]:
         Change("furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, 1 - CHANGED, shapes_a[i])
         for i, j in pairs
     ]
-    lone_a = [i for i in range(len(shapes_a)) if i not in {i for i, _ in pairs}]
-    lone_b = [j for j in range(len(shapes_b)) if j not in {j for _, j in pairs}]
+    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
+    lone_a = [i for i in range(len(shapes_a)) if i not in rows_a]
+    lone_b = [j for j in range(len(shapes_b)) if j not in rows_b]
     gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in lone_a]
-    new = [_turn_round(_judge_piece(int(numbers_b[j]), shapes_b[j], b, a)) for j in lone_b]
+    new = [_judge_piece(int(numbers_b[j]), shapes_b[j], b, a).turned() for j in lone_b]
     walls = overlays.unite_areas([a.place(body) for body in a.plan.bodies])
     return [*found, *_join_moved(gone, new, walls)]
 
@@ -209,14 +211,10 @@ def _join_moved(gone: list[Change], new: list[Change], walls: BaseGeometry) -> l
                 shift_m=math.hypot(x_m, y_m),
             )
         )
-    rest_a = [c for i, c in enumerate(gone) if i not in {i for i, _ in pairs}]
-    rest_b = [c for j, c in enumerate(new) if j not in {j for _, j in pairs}]
+    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
+    rest_a = [c for i, c in enumerate(gone) if i not in rows_a]
+    rest_b = [c for j, c in enumerate(new) if j not in rows_b]
     return [*moved, *rest_a, *rest_b]
-
-
-def _turn_round(change: Change) -> Change:
-    verdict = NEW if change.verdict == GONE else change.verdict
-    return replace(change, number_a=-1, number_b=change.number_a, verdict=verdict)
 
 
 def _share_areas(shapes: Array, others: Array) -> FloatArray:

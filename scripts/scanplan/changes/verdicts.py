@@ -4,7 +4,7 @@ Probabilities are those of two cases, by what rays and faces of both surveys sho
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from shapely.geometry.base import BaseGeometry
 
@@ -68,6 +68,17 @@ class Change:
     def is_change(self) -> bool:
         """Whether it is a change that is likely."""
         return self.verdict in CHANGES and self.p >= LIKELY
+
+    def turned(self) -> "Change":
+        """Return it as seen from the other survey: what is gone there is new here."""
+        return replace(
+            self,
+            number_a=self.number_b,
+            number_b=self.number_a,
+            kind_a=self.kind_b,
+            kind_b=self.kind_a,
+            verdict=NEW if self.verdict == GONE else self.verdict,
+        )
 
 
 def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:

@@ -11,7 +11,7 @@ from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.face_shifts import FaceShifts
 from scanplan.changes.ray_cells import CELL_M, Later
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -98,14 +98,9 @@ def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
         Of their faces, seen from those of a.
     """
     gone = list(_compare(a, b, shifts))
-    new = [_turn_round(change) for change in _compare(b, a, shifts.turned())]
+    new = [change.turned() for change in _compare(b, a, shifts.turned())]
     # what faces of both show is told by the walls of a
     return gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
-
-
-def _turn_round(change: Change) -> Change:
-    verdict = NEW if change.verdict == GONE else change.verdict
-    return replace(change, number_a=change.number_b, number_b=change.number_a, verdict=verdict)
 
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
