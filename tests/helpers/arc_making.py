@@ -59,8 +59,8 @@ def polygon_faces(corners_m, towards_m, rng, **noise):
 
 
 def samples(faces):
-    """What is sampled of faces, each of a wall of its own."""
-    return [sample_face(number, of) for number, of in enumerate(faces)]
+    """What is sampled of faces."""
+    return [sample_face(of) for of in faces]
 
 
 def single_walls(faces):

@@ -44,9 +44,9 @@ def bend_walls(
     """
     samples = [
         sample
-        for number, wall in enumerate(walls)
+        for wall in walls
         for face in wall.members
-        if (sample := sample_face(number, face)) is not None
+        if (sample := sample_face(face)) is not None
     ]
     curves = circle_search.find_curves(
         samples,

@@ -19,8 +19,6 @@ class FaceSamples:
 
     Attributes
     ----------
-    wall : int
-        The number of its wall.
     face : intervals.FaceInterval
     xy_m : (n, 2) float64
         The mean place of each column's points, scan by scan.
@@ -31,19 +29,13 @@ class FaceSamples:
         Sum of their squared distances from a line of their own, in variances.
     """
 
-    wall: int
     face: FaceInterval
     xy_m: FloatArray
     variance: FloatArray
     misfit: float
 
-    @property
-    def middle_m(self) -> FloatArray:
-        """Halfway between its ends, (2,)."""
-        return self.face.ends.mean(axis=0)
 
-
-def sample_face(wall: int, face: FaceInterval) -> FaceSamples | None:
+def sample_face(face: FaceInterval) -> FaceSamples | None:
     """Return a face's samples; None of one that is too short, or that too few points show."""
     seen, points = face.seen, face.points
     if face.n_points < ENOUGH_RAYS:
@@ -61,7 +53,7 @@ def sample_face(wall: int, face: FaceInterval) -> FaceSamples | None:
     variance = np.maximum(between_scans / n_scans, _LEAST_VARIANCE_M2)
     variance *= max(_misfit(x_m, y_m, variance, 2) / (len(x_m) - 3), 1.0)
     xy_m = seen.line.at(x_m) + y_m[:, None] * seen.line.normal
-    return FaceSamples(wall, face, xy_m, variance, _misfit(x_m, y_m, variance, 1))
+    return FaceSamples(face, xy_m, variance, _misfit(x_m, y_m, variance, 1))
 
 
 def _misfit(x_m: FloatArray, y_m: FloatArray, variance: FloatArray, degree: int) -> float:
