@@ -1,5 +1,7 @@
 """A stage that a plan does without spoils nothing where it fails, and is tried again."""
 
+import itertools
+
 import pytest
 
 from helpers.project_copy import Project
@@ -60,5 +62,6 @@ def test_what_was_lacking_is_made_by_the_same_command(project):
     made, right = project.digests(), project.right
     assert made.keys() == right.keys()
     # a title block names the code, which a spoilt script was a part of when the sheet was drawn
-    drawn = {f"results/demo/plan/plan.{kind}" for kind in ("svg", "pdf", "dxf", "png")}
+    sheets = itertools.product(("plan", "presentation"), ("svg", "pdf", "dxf", "png"))
+    drawn = {f"results/demo/plan/{sheet}.{kind}" for sheet, kind in sheets}
     assert {name for name in made if made[name] != right[name]} <= drawn
