@@ -72,6 +72,13 @@ def test_a_wall_that_moved_does_not_move_the_frame():
     assert ((sigma_m > 1e-3) & (sigma_m < 0.02)).all()
 
 
+def test_frames_that_are_one_are_said_to_be_without_a_minus():
+    found = tie(survey(), survey())
+    nearly = replace(found.fit, motion=PlaneMotion(-1e-9, -1e-9, -1e-9))
+    said = change_table.summarise_tie(replace(found, fit=nearly))
+    assert "+0.00 " in said and "-0.0" not in said
+
+
 def test_a_symmetric_floor_is_told_and_frames_are_left_as_they_are():
     square = [(0, 0, 5, 0), (5, 0, 5, 5), (5, 5, 0, 5), (0, 5, 0, 0)]
     a = survey([], [], outer=square)

@@ -97,8 +97,8 @@ def summarise_tie(tie: FrameTie) -> str:
     sigma_m = math.sqrt(float(np.diag(fit.covariance)[:2].max()))
     sigma_deg = math.degrees(math.sqrt(float(fit.covariance[2, 2])))
     return (
-        f"turned by {math.degrees(fit.motion.yaw_rad):+.2f} ± {sigma_deg:.2f}°, shifted by"
-        f" {fit.motion.x_m:+.3f}, {fit.motion.y_m:+.3f} ± {sigma_m:.3f} m; {tie.share:.0%} of the"
+        f"turned by {math.degrees(fit.motion.yaw_rad):+z.2f} ± {sigma_deg:.2f}°, shifted by"
+        f" {fit.motion.x_m:+z.3f}, {fit.motion.y_m:+z.3f} ± {sigma_m:.3f} m; {tie.share:.0%} of the"
         f" walls agree within {fit.residual_m:.3f} m"
     )
 
