@@ -17,6 +17,8 @@ import shapely
 from helpers.quarter_disc import HEIGHT_M, INNER_M, OUTER_M, RADIUS_M, THICKNESS_M, WALLS, quarter
 from scanplan.exports import dxf, envelope, geojson, ifc, svg
 from scanplan.exports.data import element_tables
+from scanplan.exports.drafting.presentation import compose_presentation
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet import composition
 
 RING_M2 = math.pi / 4 * (OUTER_M**2 - INNER_M**2)
@@ -66,6 +68,16 @@ def test_svg_and_dxf_have_arcs_and_the_sheet_the_radius():
     assert max(bulges) == pytest.approx(math.tan(math.pi / 8), abs=1e-6)
     walls = document.modelspace().query('LWPOLYLINE[layer=="A-WALL"]')
     assert any(bulge for wall in walls for *_, bulge in wall.get_points("xyb"))
+
+
+def test_the_regular_drawing_has_arcs_too():
+    measured = quarter()
+    regular, changes = draft_plan(measured, DraftSettings(0.05, (THICKNESS_M,), (), (), 0.3))
+    sheet = compose_presentation(measured, regular, changes)
+    document = ezdxf.read(io.StringIO(dxf.format_dxf(sheet, "m")))
+    for layer in ("A-WALL", "A-AREA"):
+        outlines = document.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]')
+        assert any(bulge for outline in outlines for *_, bulge in outline.get_points("xyb"))
 
 
 def test_geojson_and_tables_have_the_length_of_the_arc():

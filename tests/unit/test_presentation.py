@@ -39,6 +39,16 @@ def test_walls_are_solid_with_openings_cut_out_and_rooms_left_free():
     assert ground(composed(), "poche").area == pytest.approx(expected_m2, abs=1e-6)
 
 
+def test_walls_are_straight_where_outlines_of_rooms_waver_by_a_millimetre():
+    wavering = [(0, 0), (1.5, 0), (1.51, -0.001), (2.5, -0.001), (2.5, 0), (4, 0), (4, 3), (0, 3)]
+    rooms = floorplan_making.rooms([shapely.Polygon(wavering), floorplan_making.ROOMS[1]])
+    n_corners = [
+        shapely.get_num_coordinates(ground(sheet, "poche"))
+        for sheet in (composed(), composed(rooms=rooms))
+    ]
+    assert n_corners[1] == n_corners[0]
+
+
 def test_columns_are_solid_and_furniture_is_not_drawn():
     column = floorplan_making.furniture([shapely.box(1, 1, 1.3, 1.3)], schemas.COLUMN)
     sheet = composed(furniture=column)

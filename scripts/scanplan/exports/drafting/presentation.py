@@ -17,6 +17,7 @@ from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import SAGITTA_M
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, say_count
 from scanplan.plan.tolerances import CORNER_M
@@ -111,7 +112,9 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         bodies = overlays.unite_areas(plan.bodies[is_wanted])
         shape = overlays.subtract_areas(overlays.subtract_areas(bodies, cut_out), above)
         above = overlays.unite_each(above, shape)
-        for number, part in enumerate(content.list_polygons(shape)):
+        # rooms and openings end within a millimetre of the sides that they are cut out along
+        straight_m = overlays.simplify_shapes(shape, SAGITTA_M / 2)
+        for number, part in enumerate(content.list_polygons(straight_m)):
             yield content.draw_area(kind, part, f"{kind}-{number}", "wall", of=plan)
     is_column = plan.furniture["kind"] == schemas.COLUMN
     outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)[is_column])
