@@ -14,7 +14,9 @@ def plan_of(survey):
         lambda dataset: kept([f"results/{dataset}/plan/confidence.parquet"])
     )
     files["scans"] = of(lambda dataset: f"results/{dataset}/scans.parquet")
-    files["registration"] = of(lambda dataset: f"results/{dataset}/registration.parquet")
+    files["registration"] = of(
+        lambda dataset: f"results/{dataset}/registration.parquet"
+    )
     return {f"{survey}_{name}": file for name, file in files.items()}
 
 

@@ -33,7 +33,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 sys.path.insert(0, f"{PROJECT}/scripts")
 from scanplan.errors import StageError
-from scanplan.project import building_file, catalogue_file, export_formats, stage_settings
+from scanplan.project import (
+    building_file,
+    catalogue_file,
+    export_formats,
+    stage_settings,
+)
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     CHANGES,
