@@ -1,25 +1,3 @@
-def plan_of(survey):
-    """What a plan is compared by, of the dataset that a wildcard names, prefixed by the survey's letter."""
-    wildcard = {"a": "earlier", "b": "dataset"}[survey]
-
-    def of(path):
-        return lambda wildcards: path(getattr(wildcards, wildcard))
-
-    def table(name):
-        return of(lambda dataset: plan_table_of(dataset, name))
-
-    plan = ("faces", "walls", "openings", "rooms", "free", "furniture", "evidence")
-    files = {name: table(name) for name in plan}
-    files["confidence"] = of(
-        lambda dataset: kept([f"results/{dataset}/plan/confidence.parquet"])
-    )
-    files["scans"] = of(lambda dataset: f"results/{dataset}/scans.parquet")
-    files["registration"] = of(
-        lambda dataset: f"results/{dataset}/registration.parquet"
-    )
-    return {f"{survey}_{name}": file for name, file in files.items()}
-
-
 rule compare_surveys:
     """Tell what changed on a floor between an earlier survey of it and a later one."""
     input:
@@ -50,16 +28,6 @@ rule compare_surveys:
         settings=setting(stage_settings.select_drawing),
     script:
         "../../scripts/compare_surveys.py"
-
-
-def changes_of_datasets(wildcards):
-    """What changed in every given dataset since the one that is given before it."""
-    pairs = or_end(pair_surveys, list(GIVEN))
-    return [
-        f"results/{later}/changes/{earlier}/changes.{suffix}"
-        for earlier, later in pairs
-        for suffix in CHANGES
-    ]
 
 
 rule changes:

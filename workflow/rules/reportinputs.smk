@@ -82,3 +82,35 @@ REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js"),
 )
 CHANGES_PAGE = page_files("changes.html.j2", "changes.css", "page.css")
+
+
+def plan_of(survey):
+    """What a plan is compared by, of the dataset that a wildcard names, prefixed by the survey's letter."""
+    wildcard = {"a": "earlier", "b": "dataset"}[survey]
+
+    def of(path):
+        return lambda wildcards: path(getattr(wildcards, wildcard))
+
+    def table(name):
+        return of(lambda dataset: plan_table_of(dataset, name))
+
+    plan = ("faces", "walls", "openings", "rooms", "free", "furniture", "evidence")
+    files = {name: table(name) for name in plan}
+    files["confidence"] = of(
+        lambda dataset: kept([f"results/{dataset}/plan/confidence.parquet"])
+    )
+    files["scans"] = of(lambda dataset: f"results/{dataset}/scans.parquet")
+    files["registration"] = of(
+        lambda dataset: f"results/{dataset}/registration.parquet"
+    )
+    return {f"{survey}_{name}": file for name, file in files.items()}
+
+
+def changes_of_datasets(wildcards):
+    """What changed in every given dataset since the one that is given before it."""
+    pairs = or_end(pair_surveys, list(GIVEN))
+    return [
+        f"results/{later}/changes/{earlier}/changes.{suffix}"
+        for earlier, later in pairs
+        for suffix in CHANGES
+    ]
