@@ -50,8 +50,10 @@ def stretch(kind, low_m, high_m):
 
 
 class TestEnds:
-    @pytest.mark.parametrize(("kind", "end_m"), [("door", 4.9), ("shut", 4.9), ("open", 4.0)])
-    def test_beyond_its_faces_are_none_but_ways(self, kind, end_m):
+    @pytest.mark.parametrize(
+        ("kind", "end_m"), [("door", 4.9), ("shut", 4.9), ("window", 4.9), ("open", 4.0)]
+    )
+    def test_beyond_its_faces_are_none_but_openings(self, kind, end_m):
         found = end_where_seen([stretch("solid", 0, 4), stretch(kind, 4, 4.9)], 0.0, 4.0)
         assert found[-1].high_m == end_m
 

@@ -11,7 +11,7 @@ from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M
 from scanplan.types import FloatArray
 
-_WAYS = ("door", "shut", "glass")
+_OPENINGS = ("door", "shut", "glass", "window")
 
 
 def lengthen_walls(walls: Sequence[PlanWall], most_m: float) -> list[PlanWall]:
@@ -35,7 +35,7 @@ def find_corridors(walls: Sequence[PlanWall]) -> list[FloatArray]:
 
 
 def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) -> list[Stretch]:
-    """Return stretches of a wall that was lengthened, beyond its faces none but ways.
+    """Return stretches of a wall that was lengthened, beyond its faces none but openings.
 
     Parameters
     ----------
@@ -43,9 +43,9 @@ def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) ->
     low_m, high_m : float
         From where to where it has faces.
     """
-    ways = [stretch for stretch in stretches if stretch.kind in _WAYS]
-    begin_m = low_m if not any(_middle_m(way) < low_m for way in ways) else -np.inf
-    end_m = high_m if not any(_middle_m(way) > high_m for way in ways) else np.inf
+    middles_m = [_middle_m(stretch) for stretch in stretches if stretch.kind in _OPENINGS]
+    begin_m = low_m if not any(middle_m < low_m for middle_m in middles_m) else -np.inf
+    end_m = high_m if not any(middle_m > high_m for middle_m in middles_m) else np.inf
     cut = [replace(s, low_m=max(s.low_m, begin_m), high_m=min(s.high_m, end_m)) for s in stretches]
     return [stretch for stretch in cut if stretch.high_m > stretch.low_m]
 
