@@ -36,6 +36,8 @@ def make_pictures(results, folder):
                 _fill_window(page)
             picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
             _save(picture, WIDTH, folder / f"{name}.png")
+    sheet = Image.open(results / "plan/presentation.png").convert("RGB")
+    _save(sheet, WIDTH, folder / "presentation.png")
 
 
 def crop_sheet(results, file):
