@@ -10,10 +10,10 @@ import shapely
 from scanplan.geometry import arcs, intersections
 from scanplan.geometry.arcs import Circles
 from scanplan.plan.curves.face_samples import FaceSamples
+from scanplan.plan.model import priors
 from scanplan.plan.tolerances import CORNER_M, NOISE_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
-_ODDS = 1000.0  # that faces which meet are straight: of 1,000 walls one is curved
 _PARALLEL = 1e-3  # sine: a chord of a metre on a circle of a kilometre bows by 0.1 mm
 _MOST_ROUNDS = 10  # of faces gathered by a circle and the circle fitted to them; two to four are
 INNER, OUTER = 0, 1
@@ -70,7 +70,7 @@ def find_curves(
     found: dict[bytes, Curve] = {}
     for first, second in table.pairs_that_meet():
         curve = table.grow(first, second)
-        if curve is not None and curve.gain > 2 * math.log(_ODDS):
+        if curve is not None and curve.gain > -2 * math.log(priors.CURVED_SHARE):
             found.setdefault(curve.rows.tobytes(), curve)
     chosen: list[Curve] = []
     taken: set[int] = set()

@@ -19,8 +19,6 @@ from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.types import FloatArray, IntArray
 
 _EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
-_SHARE = 0.001  # of rows of answers are fronts
-_ERR_TOGETHER = 10  # of a column's heights: what stands in shelves of racks shows at all of them
 _THROUGH = 0.5  # of the rays to a row: what more of come through panes is outside, or mirrored
 
 
@@ -124,9 +122,8 @@ def _is_front(counts: SurfaceCounts) -> bool:
         line_labels.weigh_line(counts, line=line)
         for line in (priors.FRONT, priors.INNER, priors.OUTER, priors.ROW)
     )
-    n_heights = min(counts.ends.shape[1], _ERR_TOGETHER)
-    odds = math.log(_SHARE / (1 - _SHARE))
-    return (of_front - max(of_others)) / n_heights + odds >= 0
+    odds = math.log(priors.FRONT_SHARE / (1 - priors.FRONT_SHARE))
+    return of_front - max(of_others) + odds >= 0
 
 
 def _list_panes(stretches: Sequence[Stretch]) -> Iterator[tuple[float, float]]:

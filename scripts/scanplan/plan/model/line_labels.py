@@ -103,10 +103,14 @@ def label_line(
 
 
 def weigh_line(counts: SurfaceCounts, *, line: int) -> float:
-    """Return how likely it is that a line is of some kind, given its counts, log."""
-    labels = priors.list_labels(counts.ends.shape[1], line=line)
+    """Return how likely it is that a line is of some kind, given its counts, log.
+
+    Heights that err together are one witness.
+    """
+    n_rows = counts.ends.shape[1]
+    labels = priors.list_labels(n_rows, line=line)
     chain = _Chain(labels, weigh_columns(counts, labels), line=line, goes_on=(False, False))
-    return chain.evidence
+    return chain.evidence / min(n_rows, priors.ROWS_A_WITNESS)
 
 
 def find_nearly(shares: FloatArray, places_m: FloatArray) -> Iterator[Stretch]:

@@ -42,6 +42,12 @@ _PASSED = np.array((0.002, 1, 0.002, 0.002, 1, 0.002, 0.002))
 """How likely the same are where the sensor was carried through: a pose may be wrong."""
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
 _WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
+ROWS_A_WITNESS = 10
+"""Heights of a line that err together about what it is: shelves of a rack show at all of them."""
+FRONT_SHARE = 0.001
+"""Of rows of answers to square rays are fronts of glass."""
+CURVED_SHARE = 0.001
+"""Of walls are curved."""
 _LOW_M, _GLASS_M, _LINTEL_M = (0.5, 2.3), (1.9, 2.7), (1.9, 2.7)
 _SILL_M, _WINDOW_TOP_M, _LEAST_WINDOW = (0.3, 1.7), (1.5, 3.1), 2
 # from where to where edges are looked for, above the floor; rows of a window at least
