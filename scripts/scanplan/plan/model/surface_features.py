@@ -173,14 +173,14 @@ class Surroundings:
         one, other = self._tree.query(self._lines, predicate="dwithin", distance=reach_m)
         count = len(self.walls)
         links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
-        n_groups, group = connected_components(links, directed=False)
+        _, group = connected_components(links, directed=False)
+        of_groups = np.split(np.argsort(group, kind="stable"), np.bincount(group).cumsum()[:-1])
         ends_m = np.array([wall.ends for wall in self.walls]).reshape(-1, 2, 2)
         normal = np.array([wall.line.normal for wall in self.walls]).reshape(-1, 2)
         is_single = np.array([not wall.right for wall in self.walls], bool)
         length_m = np.array([wall.length_m for wall in self.walls])
         block_m = np.full(count, math.inf)
-        for number in range(n_groups):
-            own = group == number
+        for own in of_groups:
             outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
             middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
             off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
