@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 
 from scanplan.changes import ray_cells, verdicts
+from scanplan.changes.pairing import Pairing, pair_most
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
 from scanplan.geometry.lines import Line
@@ -55,17 +56,14 @@ def compare_openings(a: Survey, b: Survey) -> list[Change]:
         In one frame.
     """
     of_a, of_b = list(_list_openings(a)), list(_list_openings(b))
-    rows = _match(of_a, of_b)
+    matched = _match(of_a, of_b)
     paired = [
         _judge_pair(of_a[i], of_b[j], a, b)
-        for i, j in rows
+        for i, j in matched.pairs
         if _is_known(of_a[i]) or _is_known(of_b[j])
     ]
-    rows_a, rows_b = {i for i, _ in rows}, {j for _, j in rows}
-    lone_a = [one for i, one in enumerate(of_a) if i not in rows_a]
-    lone_b = [one for j, one in enumerate(of_b) if j not in rows_b]
-    gone = [_judge_alone(opening, a, b) for opening in lone_a if _is_known(opening)]
-    new = [_judge_alone(opening, b, a).turned() for opening in lone_b if _is_known(opening)]
+    gone = [_judge_alone(of_a[i], a, b) for i in matched.lone_a if _is_known(of_a[i])]
+    new = [_judge_alone(of_b[j], b, a).turned() for j in matched.lone_b if _is_known(of_b[j])]
     return [*paired, *gone, *new]
 
 
@@ -87,19 +85,11 @@ def _list_openings(survey: Survey) -> Iterator[_Opening]:
         yield _Opening(number, str(plan.openings["type"][row]), line, width_m, half_m)
 
 
-def _match(of_a: list[_Opening], of_b: list[_Opening]) -> list[tuple[int, int]]:
+def _match(of_a: list[_Opening], of_b: list[_Opening]) -> Pairing:
     """Return which openings of two surveys are one: those that overlap most first."""
-    overlaps = [
-        (-share, i, j)
-        for i, one in enumerate(of_a)
-        for j, other in enumerate(of_b)
-        if (share := _overlap(one, other)) >= _OVERLAP
-    ]
-    pairs: list[tuple[int, int]] = []
-    for _, i, j in sorted(overlaps):
-        if all(i != row and j != column for row, column in pairs):
-            pairs.append((i, j))
-    return sorted(pairs)
+    overlaps = np.array([[_overlap(one, other) for other in of_b] for one in of_a])
+    overlaps = overlaps.reshape(len(of_a), len(of_b))
+    return pair_most(np.where(overlaps >= _OVERLAP, overlaps, 0.0))
 
 
 def _overlap(one: _Opening, other: _Opening) -> float:

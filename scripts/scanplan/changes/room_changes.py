@@ -10,6 +10,7 @@ import shapely.affinity
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes import ray_cells, verdicts
+from scanplan.changes.pairing import pair_most
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import (
     CHANGED,
@@ -27,9 +28,7 @@ from scanplan.types import Array, FloatArray, IntArray
 
 _SEEN = 0.5  # of a room's floor: less shows nothing of it
 _ALIKE = 0.5  # intersection over union of two rooms that are one
-_TOUCH_M = (
-    0.5  # of a changed wall from the outline of a room: half of a thick one, and what ends err
-)
+_TOUCH_M = 0.5  # from a changed wall to a room: half of a thick one, and what ends err
 _CHANGED_SHARE = 0.01  # of a room's area, beside a wall that has changed: 5 cm of a room of 5 m
 _IN_PLACE = 0.3  # intersection over union of two outlines of one piece, each seen in part
 _SIDE_M = 0.1  # that a side of a piece is rough by
@@ -54,22 +53,15 @@ def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Chang
     walls = [c for c in changes if c.table == "wall" and c.verdict in CHANGES]
     areas_a, areas_b = (np.array([s.place(area) for area in s.plan.areas], object) for s in (a, b))
     shared = _share_areas(areas_a, areas_b)
-    pairs = _pair_most(shared, _ALIKE)
-    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
+    matched = pair_most(shared, _ALIKE)
     numbers_a, numbers_b = a.plan.rooms["room"], b.plan.rooms["room"]
     found = [
         _judge_pair(int(numbers_a[i]), int(numbers_b[j]), areas_a[i], areas_b[j], walls)
-        for i, j in pairs
+        for i, j in matched.pairs
     ]
-    found += [
-        _judge_alone(int(numbers_a[i]), areas_a[i], b.free, walls)
-        for i in range(len(areas_a))
-        if i not in rows_a
-    ]
+    found += [_judge_alone(int(numbers_a[i]), areas_a[i], b.free, walls) for i in matched.lone_a]
     new = [
-        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, walls).turned()
-        for j in range(len(areas_b))
-        if j not in rows_b
+        _judge_alone(int(numbers_b[j]), areas_b[j], a.free, walls).turned() for j in matched.lone_b
     ]
     return [*found, *new]
 
@@ -129,16 +121,13 @@ def compare_furniture(a: Survey, b: Survey) -> list[Change]:
     """
     shapes_a, numbers_a = _list_pieces(a)
     shapes_b, numbers_b = _list_pieces(b)
-    pairs = _pair_most(_share_areas(shapes_a, shapes_b), _IN_PLACE)
+    matched = pair_most(_share_areas(shapes_a, shapes_b), _IN_PLACE)
     found = [
         Change("furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, 1 - CHANGED, shapes_a[i])
-        for i, j in pairs
+        for i, j in matched.pairs
     ]
-    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
-    lone_a = [i for i in range(len(shapes_a)) if i not in rows_a]
-    lone_b = [j for j in range(len(shapes_b)) if j not in rows_b]
-    gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in lone_a]
-    new = [_judge_piece(int(numbers_b[j]), shapes_b[j], b, a).turned() for j in lone_b]
+    gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in matched.lone_a]
+    new = [_judge_piece(int(numbers_b[j]), shapes_b[j], b, a).turned() for j in matched.lone_b]
     walls = overlays.unite_areas([a.place(body) for body in a.plan.bodies])
     return [*found, *_join_moved(gone, new, walls)]
 
@@ -196,9 +185,9 @@ def _join_moved(gone: list[Change], new: list[Change], walls: BaseGeometry) -> l
             is_one &= not way.intersects(walls)
             if is_one and apart_m <= _CARRIED_M and areas[0] >= _AS_LARGE * areas[1]:
                 closeness[i, j] = 1 - apart_m / (2 * _CARRIED_M)
-    pairs = _pair_most(closeness, 0.0)
+    matched = pair_most(closeness)
     moved = []
-    for i, j in pairs:
+    for i, j in matched.pairs:
         way_m = shapely.get_coordinates([new[j].shape.centroid, gone[i].shape.centroid])
         x_m, y_m = (way_m[0] - way_m[1]).tolist()
         moved.append(
@@ -211,9 +200,8 @@ def _join_moved(gone: list[Change], new: list[Change], walls: BaseGeometry) -> l
                 shift_m=math.hypot(x_m, y_m),
             )
         )
-    rows_a, rows_b = {i for i, _ in pairs}, {j for _, j in pairs}
-    rest_a = [c for i, c in enumerate(gone) if i not in rows_a]
-    rest_b = [c for j, c in enumerate(new) if j not in rows_b]
+    rest_a = [gone[i] for i in matched.lone_a]
+    rest_b = [new[j] for j in matched.lone_b]
     return [*moved, *rest_a, *rest_b]
 
 
@@ -226,15 +214,3 @@ def _share_areas(shapes: Array, others: Array) -> FloatArray:
         of_both = shapely.area(shapes[rows]) + shapely.area(others[columns]) - common
         shared[rows, columns] = common / of_both
     return shared
-
-
-def _pair_most(shared: FloatArray, least: float) -> list[tuple[int, int]]:
-    """Return the pairs of rows and columns that share most, the most first, above a least."""
-    pairs: list[tuple[int, int]] = []
-    order = np.argsort(-shared, axis=None, kind="stable")
-    for i, j in zip(*np.unravel_index(order, shared.shape), strict=True):
-        if shared[i, j] <= least:
-            break
-        if all(i != row and j != column for row, column in pairs):
-            pairs.append((int(i), int(j)))
-    return sorted(pairs)
