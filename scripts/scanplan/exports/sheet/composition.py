@@ -90,7 +90,7 @@ def lay_out(
 
     Raises
     ------
-    ValueError
+    CrowdedError
         If none of these holds the tables.
     """
     facts = facts or SheetFacts()

@@ -30,6 +30,10 @@ _ENOUGH = 0.55  # of the room for a plan: less looks lost, more is rare between 
 TITLE_ROWS = 9  # of the title block
 
 
+class CrowdedError(ValueError):
+    """Tables of more rows than a sheet holds."""
+
+
 @dataclass(frozen=True)
 class Slot:
     """A place for rows of a table: its upper left corner on paper, and how many there are."""
@@ -155,7 +159,7 @@ def choose_page(
 
     Raises
     ------
-    ValueError
+    CrowdedError
         If the last of the sheets does not hold the tables.
     """
     extent_m = np.asarray(high_m, float) - low_m
@@ -175,7 +179,7 @@ def choose_page(
     largest = names[-1]
     page = _fill_page(replace(empty, name=largest, size_mm=SIZES_MM[largest]), blocks)
     if page is None:
-        raise ValueError(f"tables of {sum(blocks)} rows are more than a sheet holds")
+        raise CrowdedError(f"tables of {sum(blocks)} rows are more than a sheet holds")
     scale = math.ceil(float((1000 * extent_m / _room_mm(page)).max()))
     return replace(page, scale=scale)
 
