@@ -25,6 +25,16 @@ def line_lengths_m(lines_m: FloatArray) -> FloatArray:
     return np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
 
 
+def left_normals(lines_m: FloatArray) -> FloatArray:
+    """Return the unit normals (n, 2) to the left of lines (n, 2, 2).
+
+    >>> left_normals(np.array([[[0.0, 0.0], [2.0, 0.0]]])).tolist()
+    [[-0.0, 1.0]]
+    """
+    way_m = lines_m[:, 1] - lines_m[:, 0]
+    return np.column_stack([-way_m[:, 1], way_m[:, 0]]) / np.hypot(*way_m.T)[:, None]
+
+
 @dataclass(frozen=True, eq=False)
 class Line:
     """A straight line with a side: a point on it (2,) and its unit normal (2,)."""

@@ -29,6 +29,18 @@ def rectangle_sides_m(shape: BaseGeometry) -> tuple[float, float]:
     return min(one_m, other_m), max(one_m, other_m)
 
 
+def long_axis_m(shape: BaseGeometry) -> Array:
+    """Return the longer middle line (2, 2) of the least rectangle around a shape.
+
+    >>> long_axis_m(shapely.box(0, 0, 4, 2))[:, 1].tolist()
+    [1.0, 1.0]
+    """
+    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))[:4]
+    one_m, other_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
+    sides = corners_m if one_m < other_m else np.roll(corners_m, -1, axis=0)
+    return np.array([sides[:2].mean(axis=0), sides[2:].mean(axis=0)])
+
+
 def largest_first(polygon: BaseGeometry) -> tuple[float, ...]:
     """Return what polygons are sorted by: the largest first, those of one size by their place."""
     return (-polygon.area, *polygon.bounds)

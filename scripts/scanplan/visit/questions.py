@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scanplan.geometry.lines import line_lengths_m
+from scanplan.geometry.lines import left_normals, line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.tolerances import STRETCH_M
@@ -108,7 +108,7 @@ def cut_questions(questions: Sequence[Question]) -> Pieces:
     step = np.arange(len(line)) - np.repeat(np.cumsum(number) - number, number)
     way_m = lines_m[line, 1] - lines_m[line, 0]
     middle_m = lines_m[line, 0] + way_m * ((step + 0.5) / number[line])[:, None]
-    left = _left_of(lines_m)[line]
+    left = left_normals(lines_m)[line]
     side_m = sides_m[line][..., None]
     reach_m = np.array([asked.reach_m for asked in questions])
     return Pieces(
@@ -151,7 +151,7 @@ def _ask_ways(plan: FloorPlan, track_m: FloatArray) -> Iterator[Question]:
     for row in np.flatnonzero(leads_on & np.isin(openings["type"].astype(str), WAYS)).tolist():
         line_m, sides_m = _both_sides(plan, row)
         half_m = float(line_lengths_m(line_m)[0]) / 2
-        before_m = line_m[0].mean(axis=0) + sides_m[0, :, None] * _left_of(line_m)
+        before_m = line_m[0].mean(axis=0) + sides_m[0, :, None] * left_normals(line_m)
         apart_m = np.hypot(*np.moveaxis(track_m[:, None] - before_m, -1, 0))
         if apart_m.min(initial=np.inf) > half_m:
             doubt = "nobody looked through it from near"
@@ -199,12 +199,6 @@ def _both_sides(plan: FloorPlan, row: int) -> tuple[FloatArray, FloatArray]:
 
 def _inner_sides_m(lines_m: FloatArray, area: shapely.Geometry) -> FloatArray:
     """Return the sides (k, 2) of lines along a room's outline that lie in the room."""
-    beside_m = lines_m.mean(axis=1) + END_M * _left_of(lines_m)
+    beside_m = lines_m.mean(axis=1) + END_M * left_normals(lines_m)
     is_left = shapely.contains_xy(area, beside_m)
     return np.column_stack([np.where(is_left, END_M, -END_M), np.full(len(lines_m), np.nan)])
-
-
-def _left_of(lines_m: FloatArray) -> FloatArray:
-    """Return the unit normals (k, 2) to the left of lines."""
-    way_m = lines_m[:, 1] - lines_m[:, 0]
-    return np.column_stack([-way_m[:, 1], way_m[:, 0]]) / np.hypot(*way_m.T)[:, None]

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.exports import envelope
+from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.types import BoolArray
 
@@ -22,8 +23,7 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     """
     lines_m = centrelines_m(plan.walls)
     along_m = lines_m[:, 1] - lines_m[:, 0]
-    left = np.column_stack([-along_m[:, 1], along_m[:, 0]])
-    left /= np.hypot(*along_m.T)[:, None]
+    left = left_normals(lines_m)
     left_m, right_m = plan.sides_m
     # what is assumed lies behind
     behind = np.where((left_m > right_m)[:, None], left, -left)[:, None]

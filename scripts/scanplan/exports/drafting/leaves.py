@@ -7,13 +7,12 @@ import shapely
 
 from scanplan.exports.sheet.marks import Symbol
 from scanplan.exports.sheet.symbols import WIDEST_LEAF_M
+from scanplan.geometry.polygons import long_axis_m
 from scanplan.store import schemas
-from scanplan.types import Array, Columns, FloatArray
+from scanplan.types import Columns, FloatArray
 
 _HINGE_M = 0.2  # from a jamb to the end of its leaf: what a leaf is thick, and its end is off by
-_LEAST_SHARE = (
-    0.5  # of a leaf's length that is seen beside a door: a shorter piece is something else
-)
+_LEAST_SHARE = 0.5  # of a leaf's length that is seen beside a door: less is something else
 _LEAST_SINE = 0.25  # a leaf turned less than 15 degrees is shut, and does not say to which side
 
 
@@ -21,7 +20,7 @@ def find_leaves(furniture: Columns) -> FloatArray:
     """Return the middle lines (k, 2, 2) of leaves among what stands about, map frame."""
     kinds = np.asarray(furniture["kind"], str)
     outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[kinds == schemas.LEAF])
-    return np.array([_middle_line(outline) for outline in outlines]).reshape(-1, 2, 2)
+    return np.array([long_axis_m(outline) for outline in outlines]).reshape(-1, 2, 2)
 
 
 def draw_swing(door: Symbol, leaves_m: FloatArray) -> Symbol:
@@ -68,11 +67,3 @@ def _read_leaf(
     side_m = float(along_m @ left)
     is_leaf = apart_m[hinge, end] <= _HINGE_M and length_m >= _LEAST_SHARE * leaf_m
     return (int(hinge), side_m) if is_leaf and abs(side_m) > _LEAST_SINE * length_m else (-1, 0.0)
-
-
-def _middle_line(outline: shapely.Geometry) -> Array:
-    """Return the longer middle line (2, 2) of the least rectangle around a shape."""
-    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(outline))[:4]
-    one_m, other_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
-    sides = corners_m if one_m < other_m else np.roll(corners_m, -1, axis=0)
-    return np.array([sides[:2].mean(axis=0), sides[2:].mean(axis=0)])

@@ -13,11 +13,13 @@ from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
 from scanplan.exports.sheet.marks import Mark, Symbol, straight
+from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import SAGITTA_M
+from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, say_count
 from scanplan.plan.tolerances import CORNER_M
@@ -73,7 +75,7 @@ def compose_overview(
         return lay_out(
             replace(shown, is_dimensioned=False), stated, turn_deg=turn_deg, names=("A4",)
         )
-    except ValueError:
+    except CrowdedError:
         return None
 
 
@@ -151,12 +153,10 @@ def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
     # the line of a curved wall without a thickness is its surface
     half_m = np.nan_to_num(np.asarray(plan.walls["thickness_m"], float)) / 2
     from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
+    aside_m = (np.where(from_left, 1, -1) * half_m)[:, None] * left_normals(lines_m)
     for row, host in enumerate(plan.hosts.tolist()):
         if host >= 0 and not is_measured[host]:
-            x, y = lines_m[host, 1] - lines_m[host, 0]
-            left = np.array([-y, x]) / np.hypot(x, y)
-            side = 1 if from_left[host] else -1
-            spans_m[row] += side * half_m[host] * left
+            spans_m[row] += aside_m[host]
     return spans_m
 
 

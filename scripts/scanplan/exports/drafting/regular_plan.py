@@ -14,6 +14,7 @@ from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
+from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.tolerances import CORNER_M, END_M
@@ -111,7 +112,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     # in the middle of what is behind the face
     side = np.where(walls.is_seen_from_left, -1.0, 1.0) * ~walls.is_thick
     off_m = np.nan_to_num(side * behind_m / 2)
-    middles_m = moved.lines_m + _left_normals(moved.lines_m) * off_m[:, None, None]
+    middles_m = moved.lines_m + (off_m[:, None] * left_normals(moved.lines_m))[:, None]
     drawn_m = moved_walls.join_ends(walls, middles_m, thickness_m)
     openings = moved_openings.move_openings(
         plan.openings,
@@ -218,12 +219,6 @@ def _leave_doubts(columns: Columns) -> Columns:
 
 def _ends_of(lines_m: FloatArray) -> Columns:
     return dict(zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True))
-
-
-def _left_normals(lines_m: FloatArray) -> FloatArray:
-    ways = lines_m[:, 1] - lines_m[:, 0]
-    ways = ways / np.hypot(*ways.T)[:, None]
-    return np.column_stack([-ways[:, 1], ways[:, 0]])[:, None]
 
 
 def _turn_between(before_m: FloatArray, after_m: FloatArray) -> FloatArray:

@@ -10,6 +10,7 @@ import shapely
 
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import trace_arc
+from scanplan.geometry.polygons import long_axis_m
 from scanplan.lab.evaluation import length_metrics, plan_metrics
 from scanplan.lab.evaluation.scores.scene import no_lines
 from scanplan.lab.evaluation.scores.score import Rating, read_ratings, transform_lines
@@ -202,13 +203,5 @@ def _leaves(
         lines_m = transform_lines(length_metrics.table_lines_m(table), motion)
         number = table.get("leaf", np.arange(len(lines_m)))
         return lines_m, np.asarray(number, np.int64)
-    lines_m = [_long_axis_m(outline) for outline in outlines]
+    lines_m = [long_axis_m(outline)[None] for outline in outlines]
     return np.concatenate([no_lines(), *lines_m]), np.arange(len(lines_m))
-
-
-def _long_axis_m(outline: shapely.Geometry) -> FloatArray:
-    """Return the longer middle line (1, 2, 2) of the least rectangle around a shape."""
-    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(outline))[:4]
-    one_m, other_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
-    sides = corners_m if one_m < other_m else np.roll(corners_m, -1, axis=0)
-    return np.array([[sides[:2].mean(axis=0), sides[2:].mean(axis=0)]])
