@@ -26,8 +26,6 @@ _FURNITURE: dict[str, Rule] = {
     "traces of leaves": make_rule(
         f"{_FRONTS}:find_traces", leave_leaves_alone, "plan.furniture.leaves:find_traces"
     ),
-    "strays": make_rule(f"{_FRONTS}:find_strays", find_none, "plan.furniture.strays"),
-    "blocks": make_rule(f"{_FRONTS}:find_blocks", find_none, "plan.furniture.blocks:find_blocks"),
     "pockets": make_rule(
         f"{_FRONTS}:find_pockets",
         find_none,

@@ -15,8 +15,7 @@ import numpy as np
 
 from scanplan.plan import walls
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.rays.face_raster import CELL_M, FaceRaster
-from scanplan.types import BoolArray
+from scanplan.rays.face_raster import CELL_M
 
 Function = Callable[..., Any]
 Switch = Callable[[Function], Function]
@@ -119,15 +118,6 @@ def keep_fronts(_: Function) -> Function:
 def leave_leaves_alone(_: Function) -> Function:
     """Return the surfaces of leaves without those that show them again."""
     return lambda leaves, *_args, **_named: [leaf.face for leaf in leaves]
-
-
-def mark_no_column(_: Function) -> Function:
-    """Return of a raster that no column is."""
-
-    def mark(raster: FaceRaster, *_args: Any) -> BoolArray:
-        return np.zeros(raster.n_columns, bool)
-
-    return mark
 
 
 def keep_all_returns(_: Function) -> Function:

@@ -14,7 +14,6 @@ from ablation_switches import (
     keep_all_returns,
     keep_whole,
     make_rule,
-    mark_no_column,
     put,
 )
 
@@ -31,9 +30,6 @@ FACES: dict[str, Rule] = {
         planar=True,
     ),
     "columns joined": make_rule("plan.faces.intervals:_join_columns", put(2, 0.0)),
-    "overlooked columns": make_rule(
-        "rays.face_raster:FaceRaster.is_overlooked", mark_no_column, planar=True
-    ),
     "ends by scans": make_rule(
         "plan.faces.intervals:_trim_ends",
         give_back(0),
@@ -48,14 +44,6 @@ FACES: dict[str, Rule] = {
     "stubs": make_rule("plan.faces.tracing:_without_stubs", give_back(0)),
     "doubles": make_rule("plan.faces.candidates:remove_doubles", ask_with(distance_m=0.0)),
     "ghosts": make_rule("plan.faces.candidates:remove_doubles", ask_with(ghost_share=0.0)),
-    "fronts in tracing": make_rule(
-        "plan.faces.tracing:_without_furniture",
-        give_back(0),
-        "plan.faces.tracing:_without_furniture",
-        "plan.faces.furniture_fronts",
-        "plan.faces.face_arrangement",
-        planar=True,
-    ),
     "owned points": make_rule(
         "plan.faces.tracing:owned_intervals", give_each(lambda _: []), "plan.faces.owned_points"
     ),

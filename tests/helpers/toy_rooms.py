@@ -31,8 +31,6 @@ LIMITS = {
 FURNITURE = {
     "furniture_height_m": 2.1,
     "furniture_depth_m": 1.0,
-    "furniture_length_m": 2.6,
-    "door_width_m": 1.5,
 }
 
 

@@ -32,17 +32,17 @@ from scanplan.lab.evaluation.scores import score_files
 from scanplan.lab.evaluation.scores.score import Score
 
 OFF = {
-    "strays": make_rule("plan.furniture.fronts:find_strays", find_none, "plan.furniture.strays"),
+    "pillars": make_rule("plan.planning:cut_off_pillars", find_none, "plan.furniture.pillars"),
     "tails": make_rule("plan.faces.trimming:trim_tails", give_back(0)),
 }
 
 
-def plans(base, strays, tails):
+def plans(base, pillars, tails):
     """What two drives are worth: digests of their tables, and how many doors are found."""
     names = (ablation.BASE, *OFF)
     return {
         name: {"tables": tables, "scores": scores}
-        for name, (tables, scores) in zip(names, (base, strays, tails), strict=True)
+        for name, (tables, scores) in zip(names, (base, pillars, tails), strict=True)
     }
 
 
@@ -88,12 +88,12 @@ def test_switches_answer_what_would_be_there_without_the_rule():
 
 
 def test_a_row_says_what_changes_in_the_mean_and_at_worst():
-    row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, FOUND)
+    row = ablation_table.row_of("pillars", OFF["pillars"], ablation.BASE, FOUND)
     assert row["changed"] == 1
     assert row["doors_driven_recall"] == pytest.approx(-0.1)
     assert row["worst"] == "doors -0.200 (one)"
     assert row["lines"] == len(
-        Path(find_holder("plan.furniture.strays:x")[0].__file__).read_text().splitlines()
+        Path(find_holder("plan.furniture.pillars:x")[0].__file__).read_text().splitlines()
     )
 
 
@@ -101,7 +101,7 @@ def test_the_worst_is_a_share_as_one_room_more_is_none_to_compare_it_with():
     before = {"room_iou": 0.9, "rooms_above_08": 5.0, "thickness_off": 0.1}
     after = {"room_iou": 0.85, "rooms_above_08": 4.0, "thickness_off": 0.2}
     found = {"one": plans(("a", before), ("b", after), ("a", before))}
-    row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, found)
+    row = ablation_table.row_of("pillars", OFF["pillars"], ablation.BASE, found)
     assert row["worst"] == "thickness off -0.100 (one)" and row["rooms_above_08"] == -1
 
 
@@ -109,7 +109,7 @@ def test_a_plan_that_cannot_be_made_without_a_rule_is_said_to_be_none():
     found = {
         "one": plans(("a", {"doors_driven_recall": 0.5}), ("none: ValueError()", {}), ("a", {}))
     }
-    row = ablation_table.row_of("strays", OFF["strays"], ablation.BASE, found)
+    row = ablation_table.row_of("pillars", OFF["pillars"], ablation.BASE, found)
     assert row["worst"] == "no plan of one"
 
 
@@ -119,7 +119,7 @@ def test_the_table_is_printed_and_written_and_names_what_changes_nothing(tmp_pat
     assert "Changes nothing anywhere: tails" in printed
     assert (tmp_path / "planar_measured.md").read_text() in printed
     rows = list(csv.DictReader((tmp_path / "planar_measured.csv").read_text().splitlines()))
-    assert [row["rule"] for row in rows] == ["strays", "tails"]
+    assert [row["rule"] for row in rows] == ["pillars", "tails"]
     assert float(rows[0]["doors_driven_recall"]) == pytest.approx(-0.1)
 
 

@@ -10,7 +10,6 @@ from shapely import box
 
 from helpers.observation_making import stretch
 from scanplan.plan.furniture import fronts
-from scanplan.plan.furniture.blocks import find_blocks
 from scanplan.plan.furniture.plan_faces import PlanFaces
 from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.furniture.recesses import stands_before_facade
@@ -161,53 +160,6 @@ def two_sided(x0, x1, y, thickness_m, **gaps):
                     **gaps)  # fmt: skip
 
 
-def room_with_two_sides(length_m, thickness_m, beside=(), others_m=(0.1,), **gaps):
-    """A room in the middle of which a wall stands, and others of other thickness elsewhere."""
-    x1 = 1.5 + length_m
-    faces = [(0, 0, x1 + 1.5, 0), (x1 + 1.5, 0, x1 + 1.5, 4), (x1 + 1.5, 4, 0, 4), (0, 4, 0, 0)]
-    outside = [wall([face]) for face in [*faces, *beside]]
-    elsewhere = [two_sided(20, 25, 5 * k, thick_m) for k, thick_m in enumerate(others_m)]
-    floor = box(0, 0, x1 + 1.5, 4).difference(box(1.5, 2, x1, 2 + thickness_m))
-    return [*outside, *elsewhere, two_sided(1.5, x1, 2, thickness_m, **gaps)], floor
-
-
-def blocks(walls, floor):
-    return find_blocks(walls, floor, usual_thickness_m, max_thickness_m=0.6, max_depth_m=1.0)
-
-
-@pytest.mark.parametrize(
-    ("length_m", "thickness_m", "rest", "n_fronts"),
-    [
-        (2, 0.5, {}, 2),
-        (2, 0.5, {"beside": [(1.5, 2, 1.5, 2.5)]}, 3),
-        (2, 0.5, {"beside": [(3.5, 2, 3.5, 0.5)]}, 0),
-        (2, 0.15, {}, 0),
-        (2, 0.5, {"others_m": (0.3, 0.3)}, 0),
-        (2, 0.5, {"others_m": ()}, 0),
-        (10, 0.4, {}, 0),
-        (2, 0.5, {"openings": [Opening(0.5, 1.4, OPEN, 99, 0.0, np.nan, False)]}, 0),
-    ],
-    ids=["block", "with_its_end", "at_a_wall", "thin", "as_others", "alone", "long", "with_a_door"],
-)
-def test_two_sides_are_a_block_where_they_stand_alone_and_thicker_than_walls(
-    length_m, thickness_m, rest, n_fronts
-):
-    found = blocks(*room_with_two_sides(length_m, thickness_m, **rest))
-    assert sum(len(block.fronts) for block in found) == n_fronts
-    assert all(block.ground.covers(box(1.5, 2, 3.5, 2.5)) for block in found)
-
-
-def test_of_two_islands_neither_says_how_thick_walls_are():
-    walls, floor = room_with_two_sides(2, 0.6)
-    # three of them: their median would be that of all
-    islands = [two_sided(10, 12, y, 0.6) for y in (2, 5)]
-    around = shapely.union_all([box(9, y - 1, 13, y + 2) for y in (2, 5)])
-    floor = floor.union(
-        around.difference(shapely.union_all([box(10, y, 12, y + 0.6) for y in (2, 5)]))
-    )
-    assert len(blocks([*walls, *islands], floor)) == 3
-
-
 def test_of_two_walls_the_thinner_is_as_walls_usually_are():
     walls = [two_sided(0, 3, 5 * k, thick_m) for k, thick_m in enumerate((0.3, 0.1))]
     assert usual_thickness_m([*walls, wall([(0, 9, 3, 9)])]) == pytest.approx(0.1)
@@ -235,29 +187,6 @@ def test_a_pier_may_be_thicker_than_walls_are():
     walls = [two_sided(0, 3, 0, 0.1), two_sided(0, 3, 5, 0.1), two_sided(0, 0.8, 9, 0.5)]
     assert greatest_thickness_m(walls) == pytest.approx(0.5)
     assert greatest_thickness_m([]) == pytest.approx(0.2)
-
-
-def test_partitions_that_stand_free_say_how_thick_walls_are_and_islands_do_not():
-    """Two partitions, an island, and a counter at a wall as thick as the island."""
-    walls, floor = room_with_two_sides(2, 0.6, others_m=(0.6,))
-    partitions = [two_sided(10, 12.5, y, 0.14) for y in (2, 5)]
-    around = shapely.union_all([box(9, y - 1, 13.5, y + 2) for y in (2, 5)])
-    stand = shapely.union_all([box(10, y, 12.5, y + 0.14) for y in (2, 5)])
-    (found,) = blocks([*walls, *partitions], floor.union(around.difference(stand)))
-    assert found.ground.covers(box(1.5, 2, 3.5, 2.6))
-
-
-def test_walls_are_left_without_blocks_of_two_sides():
-    walls, floor = room_with_two_sides(2, 0.5)
-
-    def assemble(faces):
-        return [wall for wall in walls if all(face in faces for face in wall.members)]
-
-    left, (ground,), _ = fronts.drop_fronts(
-        *(walls, floor, floor, assemble, usual_thickness_m),
-        **MOST,
-    )
-    assert left == walls[:-1] and ground.covers(box(1.5, 2, 3.5, 2.5))
 
 
 def test_a_block_whose_side_goes_on_with_another_side_beyond_a_door_is_wall():

@@ -159,7 +159,7 @@ def test_a_gap_a_corner_and_a_door_are_as_wide_for_scans_and_for_the_plan():
     walls = stage_settings.select_extractor(settings, "iterative_ransac")
     assert plan["merge"]["max_gap_m"] == plan["trace"]["max_gap_m"] == walls["max_gap_m"] == 0.7
     assert plan["merge"]["corner_m"] == walls["corner_m"] == 0.2
-    assert plan["openings"]["max_door_m"] == plan["furniture"]["door_width_m"] == 1.2
+    assert plan["openings"]["max_door_m"] == 1.2
 
 
 def test_one_seed_draws_everything_but_the_simulation():

@@ -11,7 +11,6 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.plan import plan_tables, uncertainty, wall_faces, wall_ground
 from scanplan.plan.curves.curved_walls import bend_walls
-from scanplan.plan.faces.furniture_fronts import FurnitureLimits
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.plan.faces.tracing import trace_faces
@@ -59,6 +58,22 @@ _Free = tuple[list[shapely.MultiPolygon], shapely.MultiPolygon]
 
 
 @dataclass(frozen=True)
+class FurnitureSettings:
+    """How large furniture is.
+
+    Attributes
+    ----------
+    furniture_height_m : float, > 0
+        What is seen higher is none.
+    furniture_depth_m : float, >= 0
+        From its front to the wall behind.
+    """
+
+    furniture_height_m: float
+    furniture_depth_m: float
+
+
+@dataclass(frozen=True)
 class RoomSettings:
     """What a room is.
 
@@ -84,7 +99,7 @@ class PlanSettings:
     merge: MergeSettings
     reading: RaySettings
     ranges: range_bias.RangeBiasSettings
-    furniture: FurnitureLimits
+    furniture: FurnitureSettings
     pairs: PairSettings
     openings: OpeningSettings
     rooms: RoomSettings
@@ -141,7 +156,7 @@ def make_plan_settings(
         merge=MergeSettings(**merge),
         reading=RaySettings(**trace),
         ranges=range_bias.RangeBiasSettings(**ranges),
-        furniture=FurnitureLimits(**furniture),
+        furniture=FurnitureSettings(**furniture),
         pairs=PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
         openings=OpeningSettings(**openings),
         rooms=RoomSettings(**rooms),
@@ -343,8 +358,8 @@ class _Survey:
         """Return walls with their openings."""
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
-            *(candidates, self.rays, self.settings.merge, self.settings.reading),
-            *(self.settings.furniture, self.settings.pairs),
+            *(candidates, self.rays, self.settings.merge),
+            *(self.settings.reading, self.settings.pairs),
         )
         walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)

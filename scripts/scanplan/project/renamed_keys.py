@@ -23,7 +23,6 @@ _OF_BOTH_EXTRACTORS = {
         for key in (
             "max_rmse_m",
             "furniture_depth_m",
-            "furniture_length_m",
             "corner_m",
         )
     },
@@ -67,6 +66,7 @@ DROPPED = {
             "through_share",
             "missing_share",
             "stub_length_m",
+            "furniture_length_m",
         )
     },
     "thesis": "the laboratory's workflow alone knows it: workflow/thesis/Snakefile",

@@ -20,7 +20,7 @@ Keywords = dict[str, Any]
 
 _PLAN_BELOW_DOOR_M = 0.1  # less: walls above doors close ways through; more: low openings are lost
 _PAIR_MAX_ANGLE_DEG = 5.0  # more pairs what merely lies side by side, less parts short walls' sides
-_OF_THE_PLAN = ("furniture_depth_m", "furniture_length_m")
+_OF_THE_PLAN = ("furniture_depth_m",)
 """Of the keys below `walls`, what no extractor asks."""
 _THESIS_RANSAC = (
     "inlier_m",
@@ -145,10 +145,7 @@ def select_plan(settings: Settings) -> Keywords:
     low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
     thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
     furniture = {key: walls[key] for key in _OF_THE_PLAN}
-    furniture |= {
-        "furniture_height_m": building["furniture_height_m"],
-        "door_width_m": building["max_door_m"],
-    }
+    furniture |= {"furniture_height_m": building["furniture_height_m"]}
     return {
         "merge": plan["merge"] | gap | {"corner_m": walls["corner_m"]},
         "trace": plan["trace"] | gap | low,

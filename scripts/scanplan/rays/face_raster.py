@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from scanplan.rays.tolerances import FEW, STRAY_SHARE, STRETCH_M
+from scanplan.rays.tolerances import FEW, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 CELL_M = 0.05  # edge of a cell of all scans together: a few times the noise of a range
@@ -114,11 +114,6 @@ class FaceRaster:
     def is_solid(self, below_m: float) -> BoolArray:
         """Return the columns (c,) occupied below a height and not opened."""
         return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
-
-    def is_overlooked(self, below_m: float) -> BoolArray:
-        """Return the columns (c,) of planar scans with more free rays than strays."""
-        few = np.maximum(FEW, STRAY_SHARE * self.count_occupied(below_m))
-        return self.count_free(below_m) >= few
 
     @cached_property
     def _n_occupied(self) -> dict[int, IntArray]:

@@ -138,8 +138,6 @@ def find_face_intervals(
 
     Columns with points, joined over gaps that no ray went through.
 
-    What planar scans look through along most of its length is no wall.
-
     Parameters
     ----------
     seen : face_observation.FaceObservation
@@ -164,10 +162,9 @@ def find_face_intervals(
     is_opened = raster.is_opened(door_height_m)
     intervals = []
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
-        if not seen.planar or raster.is_overlooked(door_height_m)[first : last + 1].mean() < 0.5:
-            low_m = raster.first_m + CELL_M * first
-            high_m = raster.first_m + CELL_M * (last + 1)
-            intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
+        low_m = raster.first_m + CELL_M * first
+        high_m = raster.first_m + CELL_M * (last + 1)
+        intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
     return intervals
 
 

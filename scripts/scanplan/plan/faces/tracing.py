@@ -12,9 +12,7 @@ import shapely
 
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
-from scanplan.plan.faces.face_arrangement import Faces
 from scanplan.plan.faces.face_tree import FaceTree
-from scanplan.plan.faces.furniture_fronts import FurnitureLimits, find_furniture_fronts
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.plan.faces.owned_points import owned_intervals
@@ -34,7 +32,7 @@ class TracedFaces:
     faces : list of intervals.FaceInterval
     n_lines : int
     n_dropped : int
-        Lines of which nothing is left: too little seen, furniture, or drawn by a stronger one.
+        Lines of which nothing is left: too little seen, or drawn by a stronger one.
     """
 
     faces: list[FaceInterval]
@@ -47,7 +45,6 @@ def trace_faces(
     rays: RaySet,
     merging: MergeSettings,
     reading: RaySettings,
-    furniture: FurnitureLimits,
     pairing: PairSettings,
 ) -> TracedFaces:
     """Trace the faces along the lines of candidates.
@@ -58,21 +55,20 @@ def trace_faces(
        later pass reads this observation.
     2. First intervals (`_FaceSelection.select_walls`): the solid intervals of each line, whatever
        crosses it. Those too little supported, with what may be the wall's other side, go first, so
-       that none of them takes away from others; then doubles, since a ghost of a wall behind it
-       could make a front of the wall; then fronts of furniture. Only what stays may own points of
+       that none of them takes away from others; then doubles. Only what stays may own points of
        another line.
     3. Owned points (`owned_intervals`): where those faces cross other lines, the points at a
        crossing are theirs.
     4. Second intervals (`select_walls` again): the observations are cut anew, without the owned
-       points. So what pass 2 removed is back, and intervals begin and end elsewhere: support,
-       doubles and fronts are asked of these once more.
+       points. So what pass 2 removed is back, and intervals begin and end elsewhere: support and
+       doubles are asked of these once more.
     5. Trim (`trim`): chords of a curve where they overshoot each other, then tails of stray points
        behind crossing faces, then stubs that are left. Before corners, since an end moves no
        farther than `corner_m`: it must first be where the face ends.
     6. Meet (`meet_at_corners`): ends are moved to where lines cross. Some faces reach the line
        that they end at only now, so tails are trimmed a second time; extents and points per metre
        have changed, so doubles are removed a third time, which also leaves the strongest face
-       first. Fronts are not asked again: corners bring no new face. Stubs that are left go last.
+       first. Stubs that are left go last.
 
     Parameters
     ----------
@@ -81,7 +77,6 @@ def trace_faces(
     rays : ray_set.RaySet
     merging : merging.MergeSettings
     reading : face_observation.RaySettings
-    furniture : furniture.FurnitureLimits
     pairing : wall_pairs.PairSettings
 
     Returns
@@ -89,7 +84,7 @@ def trace_faces(
     TracedFaces
         Its faces meet at corners, none beside a stronger one.
     """
-    selection = _FaceSelection(merging, furniture, pairing)
+    selection = _FaceSelection(merging, pairing)
     find_intervals = partial(
         intervals.find_face_intervals,
         door_height_m=reading.door_height_m,
@@ -135,21 +130,19 @@ class _FaceSelection:
     """Which intervals are faces of walls, and how much of each."""
 
     merging: MergeSettings
-    furniture: FurnitureLimits
     pairing: PairSettings
 
     def select_walls(self, of_lines: Iterable[Sequence[FaceInterval]]) -> list[FaceInterval]:
         """Return the intervals, listed by line, that are walls.
 
-        Supported, none beside a stronger one, none a front of furniture.
+        Supported, none beside a stronger one.
         """
         dense = [self._find_dense(of_line) for of_line in of_lines]
         found = FaceTree(
             [i for of_line in dense for i in of_line if i.length_m >= self.merging.min_length_m]
         )
         supported = [interval for of_line in dense for interval in self._supported(of_line, found)]
-        single = self.merging.remove_doubles(supported)
-        return _without_furniture(single, self.furniture)
+        return self.merging.remove_doubles(supported)
 
     def trim(self, walls: Sequence[FaceInterval]) -> list[FaceInterval]:
         """Return intervals without overshoots, tails and stubs."""
@@ -202,26 +195,6 @@ def _has_moved(interval: FaceInterval) -> bool:
         return False
     through = seen.free_between(interval.low_m + CELL_M, interval.high_m - CELL_M)
     return len(np.unique(seen.free_scan[through])) >= interval.n_scans
-
-
-def _without_furniture(
-    found: Sequence[FaceInterval], limits: FurnitureLimits
-) -> list[FaceInterval]:
-    """Return the intervals that are no fronts of furniture.
-
-    Of scans in space labels decide what is (`plan.model`).
-    """
-    if not found or not found[0].seen.planar:
-        return list(found)
-    observations = {id(interval.seen): None for interval in found}
-    numbers = {key: number for number, key in enumerate(observations)}
-    faces = Faces(
-        ends_m=np.array([interval.ends for interval in found]),
-        normal=np.array([interval.line.normal for interval in found]),
-        line=np.array([numbers[id(interval.seen)] for interval in found]),
-    )
-    fronts = find_furniture_fronts(faces, limits).tolist()
-    return [interval for interval, is_front in zip(found, fronts, strict=True) if not is_front]
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:

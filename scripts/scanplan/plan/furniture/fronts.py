@@ -6,10 +6,8 @@ front there is a pocket no larger than furniture and what it hides, up to the wa
 whose line floor of the same room ends beside the pocket, and that goes farther through all rooms
 than the front's own line; that goes on on both sides of it; or that the building ends at. A facade
 that steps back by less than furniture is deep, and shows no opening, cannot be told from a bench: a
-room's outline there is one that was not seen. A block that stands alone on the floor of a room is
-furniture, too, if it is thicker than a wall of the building and longer than a column; an island or
-a row of cupboards, no deeper than furniture, may be twice as large. Leaves of open doors are taken
-off before, and then short surfaces that stand free and oblique.
+room's outline there is one that was not seen. A front as long as walls are may be one; then it
+stays, and labels decide (`plan.model.things`). Leaves of open doors are taken off before.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,11 +17,10 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.plan.faces.intervals import FaceInterval
-from scanplan.plan.furniture.blocks import find_blocks
 from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
 from scanplan.plan.furniture.pocket import Pocket
 from scanplan.plan.furniture.pockets import find_pockets
-from scanplan.plan.furniture.strays import find_strays
+from scanplan.plan.model import things
 from scanplan.plan.plan_wall import PlanWall, list_faces
 from scanplan.rays import free_space
 
@@ -40,7 +37,7 @@ def drop_fronts(
     max_depth_m: float,
     ghost_distance_m: float,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
-    """Return walls without fronts or strays, the ground of furniture, and leaves of doors.
+    """Return walls without fronts, the ground of furniture, and leaves of doors.
 
     Without its fronts walls behind it may be joined, and close more pockets: until none is found.
 
@@ -70,24 +67,16 @@ def drop_fronts(
         traces = find_traces(leaves, faces, ghost_distance_m=ghost_distance_m)
         are_traces = set(map(id, traces))
         walls = assemble([face for face in faces if id(face) not in are_traces])
-    if strays := find_strays(walls, max_length_m=max_door_m):
-        walls = assemble(_faces_but(walls, strays))
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:
         free = free_space.union_on_grid([floor, *grounds])
-        blocks = find_hidden(find_blocks(walls, free, measure_thickness_m, **most))
-        return blocks or find_hidden(
-            find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
-        )
-
-    def find_hidden(pockets: Sequence[Pocket]) -> list[Pocket]:
-        grounds = [pocket.ground for pocket in pockets]
-        seen_m2 = shapely.area(overlays.intersect_areas(grounds, seen))
+        pockets = find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
+        seen_m2 = shapely.area(overlays.intersect_areas([of.ground for of in pockets], seen))
         return [
             pocket
             for pocket, of_it_m2 in zip(pockets, seen_m2, strict=True)
-            if 2 * of_it_m2 <= pocket.ground.area
+            if 2 * of_it_m2 <= pocket.ground.area and things.weigh_pocket(pocket.longest_m) > 0.5
         ]
 
     while pockets := find_more():

@@ -30,6 +30,11 @@ class Pocket:
     ground: BaseGeometry
     fronts: list[FaceInterval]
 
+    @property
+    def longest_m(self) -> float:
+        """Length of the longest front; 0 where there is none."""
+        return max((front.length_m for front in self.fronts), default=0.0)
+
 
 def is_large(ground: BaseGeometry, max_depth_m: float) -> bool:
     """Return whether ground is more than furniture stands on, alone or, where narrow, in a row."""

@@ -184,7 +184,7 @@ class Surroundings:
             outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
             middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
             off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
-            is_outer = is_single[own] & (off_m > BEHIND_M)
+            is_outer = is_single[own] & (off_m > 0)
             outer_m = length_m[own][is_outer]
             if 2 * outer_m.sum() > length_m[own].sum():
                 longest = normal[own][is_outer][outer_m.argmax()]
