@@ -126,9 +126,9 @@ def test_a_sensor_at_the_plane_sees_it_edge_on(y_m, count):
     assert face.views.least_side_m == BEHIND_M
 
 
-def test_heights_of_planar_scans_are_counted_from_zero():
+def test_planar_scans_lie_a_metre_above_the_ground():
     face = cast(((0, 2, 0), [(-1, 0, 0), (3, -2, 0)]), planar=True)
-    assert face.height_m.tolist() == [0, 0]
+    assert face.height_m.tolist() == [1, 1]
     assert sorted(face.along_m) == [-1, 1.5]
 
 

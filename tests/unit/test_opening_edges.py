@@ -12,7 +12,7 @@ from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.opening_edges import is_opening, measure_opening
 
 NAN = float("nan")
-DOOR = Stretch("door", 2.0, 2.9, NAN, 2.1, 0.9)
+DOOR = Stretch("door", 2.0, 2.9, 0.0, 2.1, 0.9)
 WINDOW = Stretch("window", 2.0, 3.2, 0.9, 2.1, 0.8)
 
 
@@ -73,7 +73,7 @@ class TestJambs:
         assert (opening.low_m, opening.high_m) == pytest.approx((1.96, 2.94))
 
     def test_in_the_plane_all_returns_are_beside(self):
-        stretch = replace(DOOR, lintel_m=NAN)
+        stretch = replace(DOOR, sill_m=NAN, lintel_m=NAN)
         opening = measure_opening(seen(beside(2.04, 2.87, z_m=0.0), planar=True), stretch)
         assert (opening.low_m, opening.high_m) == pytest.approx((2.04, 2.87))
         assert np.isnan([opening.sill_m, opening.lintel_m]).all() and not opening.below_wall
@@ -108,5 +108,5 @@ class TestHeights:
         assert (opening.sill_m, opening.lintel_m) == (0.9, 2.1)
 
     def test_glass_to_the_ceiling_has_no_lintel(self):
-        opening = measure_opening(seen(), Stretch("glass", 1.0, 4.0, NAN, NAN, 0.7))
+        opening = measure_opening(seen(), Stretch("glass", 1.0, 4.0, 0.0, NAN, 0.7))
         assert opening.sill_m == 0 and np.isnan(opening.lintel_m) and not opening.below_wall

@@ -37,11 +37,11 @@ def test_no_scans_have_no_floor():
     assert np.isnan(found.floor_z_m)
 
 
-def test_heights_are_counted_from_the_floor_or_from_zero_in_the_plane():
+def test_heights_are_counted_from_the_floor_or_from_a_metre_below_a_plane():
     floor = [(x_m, 1, -0.5) for x_m in range(50)]
     assert gather_rays([(0, floor)], {0: np.zeros(3)}, planar=False).ground_z_m == -0.5
     flat = gather_rays([(0, floor)], {0: np.zeros(3)}, planar=True)
-    assert flat.ground_z_m == 0 and np.isnan(flat.floor_z_m)
+    assert flat.ground_z_m == -1.5 and np.isnan(flat.floor_z_m)
 
 
 def test_a_sensor_that_looks_upward_has_its_floor_below_the_ceiling_it_sees():

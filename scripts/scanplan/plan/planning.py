@@ -230,7 +230,7 @@ def make_plan(
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
-    floor_z_m = 0.0 if math.isnan(rays.floor_z_m) else rays.floor_z_m
+    floor_z_m = rays.ground_z_m
     cut_walls = wall_faces.cut_wall_faces(
         walls,
         max_beyond_m=settings.openings.max_closed_m,
@@ -474,7 +474,7 @@ class _Survey:
             unpaired_m=surfaces.unpaired_m,
             planar=self.rays.planar,
             ways_m=surfaces.ways_m,
-            hidden=free_space.difference_on_grid(floor, self.seen) if self.rays.planar else None,
+            hidden=free_space.difference_on_grid(floor, self.seen),
         )
         rooms = find_rooms(
             *([*surfaces.bounds, *partings], self.views, self.track_m),

@@ -97,8 +97,6 @@ class _Assembly:
 
     def extend_over_openings(self, wall: PlanWall, crossings: Sequence[Crossing]) -> PlanWall:
         """Let a wall go on over an opening, under a lintel, to the wall that it ends at."""
-        if wall.lines[0].planar:
-            return wall
         least_m = max(self.corner_m, self.settings.min_opening_m)
         for name, sign in (("low_m", -1), ("high_m", 1)):
             end_m = getattr(wall, name)

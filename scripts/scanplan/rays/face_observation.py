@@ -121,9 +121,7 @@ def observe_face(
     met = np.flatnonzero(face.is_occupied | is_free)
     order = met.take(np.argsort(face.along_m.take(met), kind="stable"))
     is_occupied = face.is_occupied.take(order)
-    is_upright = (
-        np.full(len(order), True) if rays.planar else face.height_m.take(order) > SKIRTING_M
-    )
+    is_upright = face.height_m.take(order) > SKIRTING_M
     occupied = order[is_occupied & is_upright]
     free = order[is_free.take(order)]
     low = order[is_occupied & ~is_upright]

@@ -15,7 +15,10 @@ from scanplan.rays import azimuth_sectors, beam_spread, levels, usual_returns
 from scanplan.stage import workers
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+ROWS_M = np.arange(1, 43, 2) / 10
+"""Edges of the rows of heights: of beams 2 degrees apart two meet 0.2 m at 3 m."""
 _STEEP = np.tan(np.radians(20))  # up: beams of a lidar that looks level go no steeper
+_PLANE_M = 1.0  # where scans lie in one plane: above skirting boards, sills of doors, below lintels
 _TURN = 10.0  # more than a turn, so that the keys of scans do not overlap
 
 
@@ -27,6 +30,7 @@ class RaySet:
     ----------
     scan_ids : (s,) int64, increasing
     sensors_m : (s, 3) float64
+        Of planar scans as high as what they show.
     first : (s + 1,) int64
         Row that each scan's rays begin at, and that the last scan's end before.
     azimuth_rad : (n,) float64
@@ -50,10 +54,21 @@ class RaySet:
     planar: bool
     is_level: BoolArray
 
-    @property
+    @cached_property
     def ground_z_m(self) -> float:
-        """Height that heights are counted from: the floor's, 0 of planar scans."""
-        return 0.0 if self.planar else self.floor_z_m
+        """Height that heights are counted from: the floor's, or so far below a plane of scans.
+
+        What planar scans show is then between skirting boards and lintels, as what is known of its
+        height says no more.
+        """
+        if not self.planar:
+            return self.floor_z_m
+        return float(np.median(self.xyz_m[:, 2])) - _PLANE_M if len(self.xyz_m) else 0.0
+
+    @property
+    def row_edges_m(self) -> FloatArray:
+        """Edges (r + 1,) of the rows of heights that are told apart; planar scans have one row."""
+        return np.array([-np.inf, np.inf]) if self.planar else ROWS_M
 
     @cached_property
     def scan(self) -> IntArray:
@@ -209,9 +224,12 @@ def gather_rays(
     xyz_m = np.concatenate([np.empty((0, 3)), *(points_m for _, _, points_m in gathered)])
     # they are as large again
     gathered.clear()
+    at_m = np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3)
+    if planar and len(xyz_m):
+        at_m[:, 2] = np.median(xyz_m[:, 2])
     return RaySet(
         scan_ids=np.array(scan_ids, np.int64),
-        sensors_m=np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3),
+        sensors_m=at_m,
         first=first,
         azimuth_rad=azimuth_rad,
         xyz_m=xyz_m,

@@ -92,8 +92,7 @@ def _observe_refitted(
     span_m = own_m[0] - reach_m, own_m[1] + reach_m
     near = cast_at_face(rays, line, *own_m, at_m=band_m, occluded_within_m=0.0)
     is_own = near.is_occupied & (near.along_m >= own_m[0]) & (near.along_m <= own_m[1])
-    if not rays.planar:
-        is_own &= near.height_m > SKIRTING_M
+    is_own &= near.height_m > SKIRTING_M
     refitted = refit_to_points(line, near.along_m[is_own], -near.behind_m[is_own])
     refitted_m = refitted.along_m(line.at(np.array(span_m)))
     return observe_face(rays, refitted, *refitted_m, band_m=band_m), refitted_m

@@ -39,7 +39,6 @@ def tell_columns(
     ----------
     pieces : sequence of pieces.Piece
     rays : ray_set.RaySet
-        Planar scans show no heights: all pieces stay what they are.
     walls : sequence of shapely.Polygon
         The ground that walls and their openings stand on.
     furniture_height_m : float
@@ -52,8 +51,6 @@ def tell_columns(
     list of pieces.Piece
         In the order given.
     """
-    if rays.planar:
-        return list(pieces)
     solid = overlays.unite_areas(list(walls))
     return [_tell(piece, rays, solid, furniture_height_m, max_width_m) for piece in pieces]
 
@@ -80,8 +77,6 @@ def find_column_faces(
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     """
-    if rays.planar:
-        return [False] * len(walls)
     strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
 
     def is_side(number: int, wall: PlanWall) -> bool:

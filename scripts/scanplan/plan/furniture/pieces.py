@@ -139,9 +139,7 @@ def _gather_returns(
     for scan, of_scan in enumerate(rays.rows):
         xyz_m = rays.xyz_m[of_scan]
         height_m = xyz_m[:, 2] - rays.ground_z_m
-        is_wanted = np.full(len(height_m), rays.planar)
-        is_wanted |= (height_m > SKIRTING_M) & (height_m < max_height_m)
-        rows = np.flatnonzero(is_wanted)
+        rows = np.flatnonzero((height_m > SKIRTING_M) & (height_m < max_height_m))
         place = np.floor((xyz_m[rows, :2] - grid.low_m) / grid.cell_m)
         is_inside = ((place >= 0) & (place < (n_columns, n_rows))).all(axis=1)
         column, row = place[is_inside].astype(np.int64).T
@@ -196,7 +194,8 @@ def _group_by_label(
 
 def _make_piece(returns: _Returns, cells: IntArray, grid: bitmap.Grid, rays: RaySet) -> Piece:
     z_m = np.percentile(returns.height_m, (LOW_PERCENT, 100 - LOW_PERCENT))
-    low_m, high_m = (math.nan, math.nan) if rays.planar else z_m.tolist()
+    # above the floor: nothing is known of it where all scans lie in one plane
+    low_m, high_m = (z_m + rays.ground_z_m - rays.floor_z_m).tolist()
     return Piece(
         outline=_draw_outline(_middles_m(cells, grid), grid.cell_m),
         z_min_m=low_m,

@@ -117,14 +117,10 @@ def _find_answers(walls: Sequence[PlanWall], rays: RaySet) -> Answers:
     """Return the level returns that are of no wall, nor of its windows."""
     way_m = rays.level_way_m
     length_m = np.hypot(*way_m.T)
-    up_m = np.zeros(len(way_m))
-    is_kept = length_m <= _FAR_M
-    if not rays.planar:
-        up_m = rays.xyz_m[:, 2] - rays.sensors_m[rays.scan, 2]
-        height_m = rays.xyz_m[:, 2] - rays.ground_z_m
-        is_kept &= (height_m > SKIRTING_M) & (height_m < _TOP_M)
-        is_kept &= np.abs(up_m) <= SQUARE * length_m
-    rows = np.flatnonzero(is_kept)
+    up_m = rays.xyz_m[:, 2] - rays.sensors_m[rays.scan, 2]
+    height_m = rays.xyz_m[:, 2] - rays.ground_z_m
+    is_kept = (length_m <= _FAR_M) & (height_m > SKIRTING_M) & (height_m < _TOP_M)
+    rows = np.flatnonzero(is_kept & (np.abs(up_m) <= SQUARE * length_m))
     # panes of windows stand behind the face of a facade whose other side nobody saw
     strips = wall_ground.wall_strips(walls, DEEP_M)
     ground = overlays.buffer_shapes(overlays.unite_areas(strips), FACE_M)

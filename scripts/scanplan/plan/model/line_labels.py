@@ -35,7 +35,7 @@ class Stretch:
     low_m, high_m : float
         Along the wall's line.
     sill_m, lintel_m : float
-        Between which heights above the floor it is what it is; NaN: from the floor, to any height.
+        Between which heights above the floor it is what it is; NaN: not known, to any height.
     p : float
         Probability of its kind, in the mean of its length.
     nearly : sequence of Stretch

@@ -67,7 +67,7 @@ def _find_jamb_m(wall: PlanWall, stretch: Stretch, edge_m: float, sign: int) -> 
     for seen, span_m in _faces_at(wall, edge_m - _EDGE_M, edge_m + _EDGE_M):
         rows = seen.occupied_between(*span_m)
         z_m = seen.occupied_z_m[rows]
-        is_beside = (z_m > above_m) & (z_m < below_m) if not seen.planar else z_m == z_m
+        is_beside = (z_m > above_m) & (z_m < below_m)
         along_m.append(wall.line.along_m(seen.line.at(seen.occupied_m[rows][is_beside])))
         scans.append(seen.occupied_scan[rows][is_beside])
     last_m = _last_of_scans_m(sign * np.concatenate(along_m), np.concatenate(scans))
@@ -87,15 +87,13 @@ def _last_of_scans_m(along_m: FloatArray, scan: IntArray) -> float | None:
 
 def _find_heights_m(wall: PlanWall, stretch: Stretch) -> tuple[float, float]:
     """Return sill and lintel, by returns and rays near the rows that they are in."""
-    if wall.lines[0].planar:
-        return np.nan, np.nan
     occupied: list[FloatArray] = [np.empty(0)]
     free: list[FloatArray] = [np.empty(0)]
     for seen, (low_m, high_m) in _faces_at(wall, stretch.low_m + END_M, stretch.high_m - END_M):
         occupied.append(seen.occupied_z_m[seen.occupied_between(low_m, high_m)])
         free.append(seen.free_z_m[seen.free_between(low_m, high_m)])
     z_m, free_z_m = np.concatenate(occupied), np.concatenate(free)
-    sill_m = 0.0 if np.isnan(stretch.sill_m) else stretch.sill_m
+    sill_m = stretch.sill_m
     below_m = z_m[z_m < sill_m + _ROW_M]
     if sill_m > 0 and len(below_m) >= ENOUGH_RAYS:
         sill_m = float(np.percentile(below_m, 100 - LOW_PERCENT))

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scanplan.plan.model.surface_counts import COLUMN_M, ROWS_M
+from scanplan.plan.model.surface_counts import COLUMN_M
+from scanplan.rays.ray_set import ROWS_M
 from scanplan.types import FloatArray, IntArray
 
 KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
@@ -150,9 +151,10 @@ def list_labels(n_rows: int, *, line: int) -> Labels:
     share = np.where(is_beam, _BEAM, 1 - _BEAM * ((kind == OPEN) & is_beam.any()))
     group = 2 * kind + is_beam  # labels of a group are equally likely
     edges_m = ROWS_M if n_rows > 1 else np.full(2, np.nan)
+    sills_m = np.append(0 * edges_m[:1], edges_m[1:])  # of a plane it is not known
     return Labels(
         kind=kind,
-        sill_m=np.where(low > 0, edges_m[np.minimum(low, len(edges_m) - 1)], np.nan),
+        sill_m=sills_m[np.minimum(low, len(edges_m) - 1)],
         lintel_m=np.where(high < n_rows, edges_m[np.minimum(high, len(edges_m) - 1)], np.nan),
         states=(state_of_row[:, :, None] == np.arange(len(_ENDS))).astype(float),
         log_prior=np.log(share / np.bincount(group)[group]),

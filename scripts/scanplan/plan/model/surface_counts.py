@@ -21,8 +21,6 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 COLUMN_M = 0.05
 """Of a wall's length: a few times the noise of a range."""
-ROWS_M = np.arange(1, 43, 2) / 10
-"""Edges of the rows of heights: of beams 2 degrees apart two meet 0.2 m at 3 m."""
 AT_M = 0.04
 """Returns this near to a face are at it: three times what they scatter by."""
 FACE, SHALLOW, DEEP, BEYOND, LOST, PASSED = range(6)
@@ -84,7 +82,11 @@ class _Grid:
     wall: Line
     first_m: float
     n_columns: int
-    n_rows: int
+    row_edges_m: FloatArray
+
+    @property
+    def n_rows(self) -> int:
+        return len(self.row_edges_m) - 1
 
     @property
     def ends_m(self) -> FloatArray:
@@ -116,7 +118,7 @@ def count_ends(
     sides : sequence of Side
     """
     n_columns = max(int(np.ceil((high_m - low_m) / COLUMN_M)), 1)
-    grid = _Grid(wall, low_m, n_columns, 1 if rays.planar else len(ROWS_M) - 1)
+    grid = _Grid(wall, low_m, n_columns, rays.row_edges_m)
     place = _group_places(rays.sensors_m)
     is_only = not any(side.line.normal @ sides[0].line.normal < 0 for side in sides)
     total = np.zeros((n_columns, grid.n_rows, 2, N_ENDS))
@@ -142,10 +144,8 @@ def add_passages(
     """
     place_m = find_passages(wall, track_m)
     is_free = (np.abs(counts.middles_m[:, None] - place_m) <= _CARRIER_M / 2).any(axis=1)
-    n_rows = counts.ends.shape[1]
-    if n_rows > 1:
-        high_m = float(np.median(rays.sensors_m[:, 2])) - rays.ground_z_m
-        n_rows = int(np.searchsorted(ROWS_M[1:], high_m, "right"))
+    high_m = float(np.median(rays.sensors_m[:, 2])) - rays.ground_z_m
+    n_rows = max(int(np.searchsorted(rays.row_edges_m[1:], high_m, "right")), 1)
     ends = counts.ends.copy()
     ends[is_free, :n_rows, 1, PASSED] += 1.0
     return SurfaceCounts(counts.first_m, ends)
@@ -172,14 +172,15 @@ def _count_side(
         occluded_within_m=expected_returns.NEAR_M,
     )
     end = _sort_ends(face, side.deep_m, is_only=is_only)
-    row = _rows_of(face, grid.n_rows)
+    row = np.searchsorted(grid.row_edges_m, face.height_m, "right") - 1
+    row = np.where(row < grid.n_rows, row, -1)
     column = grid.columns_of(side.line, face.along_m)
     kept = np.flatnonzero((end >= 0) & (row >= 0) & (column >= 0))
     shape = (int(place.max(initial=0)) + 1, grid.n_columns, grid.n_rows, 2, N_ENDS)
     cells = (place[face.scan[kept]], column[kept], row[kept])
     is_oblique = (~_is_square(rays, face)[kept]).astype(np.int64)
     ended = np.ravel_multi_index((*cells, is_oblique, end[kept]), shape)
-    lost = find_lost(rays, face, float(span_m[0]), grid.n_columns, COLUMN_M, _row_edges_m(grid))
+    lost = find_lost(rays, face, float(span_m[0]), grid.n_columns, COLUMN_M, grid.row_edges_m)
     column = grid.columns_of(side.line, span_m[0] + (lost.column + 0.5) * COLUMN_M)
     known = np.flatnonzero((column >= 0) & rays.is_level[lost.scan])
     of_lost = (place[lost.scan[known]], column[known], lost.row[known], 1, LOST)
@@ -193,10 +194,6 @@ def _count_side(
     size = int(np.prod(shape[1:]))
     counts = np.asarray(np.bincount(key % size, weight, minlength=size), float).reshape(shape[1:])
     return counts * _is_asked(side, grid)[:, None, None, None]
-
-
-def _row_edges_m(grid: _Grid) -> FloatArray:
-    return ROWS_M if grid.n_rows > 1 else np.array(expected_returns.ALL_HEIGHTS_M)
 
 
 def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
@@ -213,19 +210,10 @@ def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
     return end
 
 
-def _rows_of(face: FaceRays, n_rows: int) -> IntArray:
-    if n_rows == 1:
-        return np.zeros(len(face.view), np.int64)
-    row = np.searchsorted(ROWS_M, face.height_m, "right") - 1
-    return np.where(row < n_rows, row, -1)
-
-
 def _is_square(rays: RaySet, face: FaceRays) -> BoolArray:
     """Return which rays meet the face nearly square."""
     away_m = face.along_m - face.views.sensor_along_m.take(face.view)
-    up_m = np.zeros(len(away_m))
-    if not rays.planar:
-        up_m = face.height_m + rays.ground_z_m - rays.sensors_m[face.scan, 2]
+    up_m = face.height_m + rays.ground_z_m - rays.sensors_m[face.scan, 2]
     return np.hypot(away_m, up_m) <= SQUARE * np.abs(face.views.side_m).take(face.view)
 
 

@@ -11,9 +11,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from scanplan.geometry.polygons import rectangle_sides_m
-from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, ROWS_M, SurfaceCounts
+from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, SurfaceCounts
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.rays.ray_set import ROWS_M
 from scanplan.rays.tolerances import BEHIND_M
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
