@@ -81,7 +81,6 @@ _ROOMS: dict[str, Rule] = {
         f"{_BOUNDS}:_find_free_line",
         f"{_BOUNDS}:_solid_m",
         "geometry.narrow_places:_choose_gaps",
-        planar=True,
     ),
     "partings on lines of walls": make_rule(f"{_BOUNDS}:_snap", give_back(0)),
     "doors by their leaves": make_rule(f"{_BOUNDS}:_choose_ways", find_none),
@@ -89,10 +88,9 @@ _ROOMS: dict[str, Rule] = {
         "rays.free_space:close_shadows",
         give_back(0),
         "rays.free_space:close_shadows",
-        f"{_OUTLINES}:_without_shadows",
         planar=True,
     ),
-    "driven ground": make_rule("rays.free_space:driven_ground", find_none, planar=True),
+    "driven ground": make_rule("rays.free_space:driven_ground", find_none),
     "floor that other scans saw": make_rule(
         "rays.free_space:find_seen_floor", answer(_NO_GROUND), planar=True
     ),
@@ -105,9 +103,6 @@ _ROOMS: dict[str, Rule] = {
     ),
     "bare parts": make_rule(
         "geometry.bare_parts:cut_bare_parts", give_alone(0), "geometry.bare_parts", planar=True
-    ),
-    "unseen floor": make_rule(
-        "plan.planning:leave_out_unseen", give_back(0), "plan.rooms.unseen_floor", planar=True
     ),
     "bare spans": make_rule(
         "plan.wall_ground:find_bare_spans",

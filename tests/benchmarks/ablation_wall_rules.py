@@ -40,7 +40,6 @@ FACES: dict[str, Rule] = {
     "scans that show a face": make_rule(
         "plan.faces.tracing:_FaceSelection._is_shown", answer(value=True)
     ),
-    "moved": make_rule("plan.faces.tracing:_has_moved", answer(value=False), planar=True),
     "stubs": make_rule("plan.faces.tracing:_without_stubs", give_back(0)),
     "doubles": make_rule("plan.faces.candidates:remove_doubles", ask_with(distance_m=0.0)),
     "ghosts": make_rule("plan.faces.candidates:remove_doubles", ask_with(ghost_share=0.0)),

@@ -32,7 +32,7 @@ PLAN = {
         "max_closed_m": 2.0,
         "max_door_m": 1.5,
     },
-    "rooms": {"min_area_m2": 1.0, "min_walled": 0.7, "max_unseen": 0.02},
+    "rooms": {"min_area_m2": 1.0, "min_walled": 0.7},
     "trust": {"max_sigma_m": 0.05, "min_scans": 2, "min_observed": 0.5},
 }
 

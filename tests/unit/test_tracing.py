@@ -9,11 +9,10 @@ from helpers.default_settings import SETTINGS
 from helpers.observation_making import stretch
 from scanplan.plan import planning
 from scanplan.plan.faces import tracing
-from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.project import stage_settings
 
 _SETTINGS = planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
-SELECTION = tracing._FaceSelection(_SETTINGS.merge, _SETTINGS.furniture, _SETTINGS.pairs)
+SELECTION = tracing._FaceSelection(_SETTINGS.merge, _SETTINGS.pairs)
 
 
 def claims_on_first(*found):
@@ -68,20 +67,3 @@ def test_two_scans_that_show_a_side_each_show_a_wall(other_scan, n_drawn):
 )
 def test_what_is_not_the_other_side_of_a_wall_does_not_speak_for_it(other):
     assert SELECTION.select_walls([[seen_by(0, 0, 0.1, 0.75, 0.1)], [seen_by(1, *other)]]) == []
-
-
-@pytest.mark.parametrize(
-    ("through_m", "planar", "n_drawn"),
-    [((), True, 2), ((4.0,), True, 1), ((3.92,), True, 2), ((4.0,), False, 2)],
-    ids=["still", "moved", "past its edge", "in space"],
-)
-def test_in_the_line_of_a_wall_what_another_scan_looks_through_has_moved(
-    through_m, planar, n_drawn
-):
-    """A wall of 3 m, and 0.2 m that one scan sees 0.9 m beyond it: somebody, or a jamb."""
-    wall_m, beyond_m = np.arange(0.02, 3, 0.05), np.arange(3.92, 4.1, 0.02)
-    returns = [(m, 1, 0, scan) for scan in (0, 1) for m in wall_m]
-    returns += [(m, 1, 0, 2) for m in beyond_m]
-    seen = stretch(0, 0, 5, 0, returns, free=[(m, 1) for m in through_m], planar=planar).seen
-    line = [FaceInterval(seen, 0.0, 3.0), FaceInterval(seen, 3.9, 4.1)]
-    assert len(SELECTION.select_walls([line])) == n_drawn

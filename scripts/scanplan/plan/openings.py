@@ -138,9 +138,7 @@ def classify_gap(
     width_m = high_m - low_m
     is_wide = settings.min_opening_m <= width_m <= settings.max_opening_m
     least_share = _OPEN_SHARE / 2 if below_wall else _OPEN_SHARE
-    # a planar scanner sends one ray through a column: few scans make few, and columns count
-    least_rays = FEW if faces[0].planar else ENOUGH_RAYS
-    is_open = n_rays >= least_rays and open_share >= least_share
+    is_open = n_rays >= FEW and open_share >= least_share
     # wall above, some rays through a window, and what is below them hidden: no way through was seen
     is_hidden = below_wall and np.isnan(sill_m)
     is_solid = open_share <= _CLOSED_SHARE or n_rays < FEW

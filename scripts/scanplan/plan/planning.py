@@ -32,7 +32,6 @@ from scanplan.plan.plan_wall import (
 from scanplan.plan.rooms import room_bounds
 from scanplan.plan.rooms.room import Room
 from scanplan.plan.rooms.room_outlines import find_rooms
-from scanplan.plan.rooms.unseen_floor import leave_out_unseen
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.plan.walls import assemble_walls
@@ -83,13 +82,10 @@ class RoomSettings:
     min_walled : float, 0 to 1
         Least share of the outline of a room that no sensor was in, that runs along walls and
         openings.
-    max_unseen : float, 0 to 1
-        Largest share of a room's floor that furniture may hide from all planar scans.
     """
 
     min_area_m2: float
     min_walled: float
-    max_unseen: float
 
 
 @dataclass(frozen=True)
@@ -211,8 +207,7 @@ def make_plan(
         Without any row of faces or walls where nothing is supported enough.
     """
     up = _stand_plumb(rays) if up is None else up
-    if not rays.planar:
-        rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
+    rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
     errors_m = range_bias.estimate_range_bias(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
@@ -483,7 +478,6 @@ class _Survey:
             min_width_m=self.settings.pairs.max_thickness_m,
             unpaired_m=surfaces.unpaired_m,
             floor=floor,
-            planar=self.rays.planar,
             threads=self.threads,
         )
         strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
@@ -495,19 +489,8 @@ class _Survey:
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
         )
-        if self.rays.planar:
-            seen = self._floor_with([piece.outline for piece in pieces])
-            rooms = leave_out_unseen(
-                *(rooms, seen, surfaces.bounds, self.track_m),
-                partings=partings,
-                views=self.views,
-                min_area_m2=min_area_m2,
-                max_depth_m=self.settings.furniture.furniture_depth_m,
-                max_unseen=self.settings.rooms.max_unseen,
-                unpaired_m=surfaces.unpaired_m,
-            )
-            # nothing of the plan is known of what other scans alone saw
-            rooms = [room for room in rooms if room.n_scans]
+        # nothing of the plan is known of what other scans alone saw
+        rooms = [room for room in rooms if room.n_scans]
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         pieces = tell_columns(
             *(pieces, self.rays, strips),
@@ -537,11 +520,8 @@ def _stand_plumb(rays: RaySet) -> FloatArray:
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:
     """Return what each scan saw free, and all that was."""
     views = free_space.free_polygons(rays)
-    floors: list[BaseGeometry] = list(views)
-    # in space beams of other elevations see the floor beside a chair
-    if rays.planar:
-        floors += free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
-    return views, free_space.union_on_grid(floors)
+    driven = free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
+    return views, free_space.union_on_grid([*views, *driven])
 
 
 def _find_free_floor(

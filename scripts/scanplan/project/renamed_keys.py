@@ -55,6 +55,7 @@ RENAMED = {
 """Old key to the new one; beside these, a key that is known with or without `advanced` moved."""
 
 _LABELS = "labels of lines and surfaces decide now what is a wall"
+_UNSEEN = "what walls close is a room's, whoever saw its floor"
 DROPPED = {
     "advanced.plan.surfaces": _LABELS,
     **{
@@ -70,6 +71,7 @@ DROPPED = {
         )
     },
     "thesis": "the laboratory's workflow alone knows it: workflow/thesis/Snakefile",
+    **dict.fromkeys(("plan.rooms.max_unseen", "advanced.plan.rooms.max_unseen"), _UNSEEN),
     "plan.right_angles": "faces are drawn as turned as their points are",
     "plan.pair.max_angle_deg": "it is always 5 degrees",
 }

@@ -12,7 +12,7 @@ from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.rays import ray_set
 from scanplan.rays.beam_spread import column_spacing_rad
 from scanplan.rays.ray_set import RaySet
-from scanplan.types import FloatArray
+from scanplan.types import Array, FloatArray
 
 _SECTOR_RAD = np.radians(0.5)
 _SPARE = 1.1  # a sector is so much wider than what has to be in it, however rays fall
@@ -118,8 +118,8 @@ def _outline_of_sectors(azimuth_rad: FloatArray, way_m: FloatArray) -> FloatArra
     return np.stack([begin, end], axis=1).reshape(-1, 2)
 
 
-def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> list[Polygon]:
-    """Return the ground that was driven over between places, one after the other.
+def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> Array:
+    """Return the polygons (k,) that were driven over between places, one after the other.
 
     Nothing stood there, whatever shadows of chairs and of people leave of it unseen.
 
@@ -134,7 +134,7 @@ def driven_ground(track_m: FloatArray, *, width_m: float, max_step_m: float) -> 
     """
     is_known = np.hypot(*np.diff(track_m, axis=0).T) <= max_step_m
     steps_m = np.stack([track_m[:-1], track_m[1:]], axis=1)[is_known]
-    return [overlays.buffer_shapes(shapely.LineString(step_m), width_m / 2) for step_m in steps_m]
+    return overlays.buffer_shapes(shapely.linestrings(steps_m), width_m / 2)
 
 
 def union_on_grid(polygons: Sequence[BaseGeometry]) -> MultiPolygon:

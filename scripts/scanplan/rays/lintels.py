@@ -33,7 +33,6 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
     Parameters
     ----------
     rays : ray_set.RaySet
-        In space.
     segments : dict of str to (n,) array
         `scan_id`, `x0_m`, `y0_m`, `x1_m`, `y1_m` of walls that those scans saw.
     track_m : (k, 2) float64
@@ -42,9 +41,10 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
     Returns
     -------
     float
-        `rays.floor_z_m` where the sensor looks down, few doors were driven through, or both agree.
+        `rays.floor_z_m` where the sensor looks down, few doors were driven through, or both agree;
+        NaN where all scans lie in one plane.
     """
-    if _looks_down(rays) or len(track_m) < 2:
+    if np.isnan(rays.floor_z_m) or _looks_down(rays) or len(track_m) < 2:
         return rays.floor_z_m
     found = np.array(list(_find_lintels(rays, segments, track_m))).reshape(-1, 3)
     is_near = np.linalg.norm(found[:, None, :2] - found[:, :2], axis=2) <= _PLACE_M

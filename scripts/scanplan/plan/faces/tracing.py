@@ -19,7 +19,6 @@ from scanplan.plan.faces.owned_points import owned_intervals
 from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.plan.wall_pairs import PairSettings
 from scanplan.rays.face_observation import FaceObservation, RaySettings
-from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
 
 
@@ -164,7 +163,7 @@ class _FaceSelection:
     def _supported(self, of_line: Sequence[FaceInterval], found: FaceTree) -> list[FaceInterval]:
         """Return the intervals of one line that enough scans show, with their walls' other sides.
 
-        Where one is sure, short ones beside it stay, too, but for what moved.
+        Where one is sure, short ones beside it stay, too.
         """
         is_sure = any(
             interval.length_m >= self.merging.min_length_m and self._is_shown(interval, found)
@@ -172,8 +171,7 @@ class _FaceSelection:
         )
         if not is_sure:
             return []
-        stays = [i for i in of_line if i.length_m >= self.merging.min_length_m or not _has_moved(i)]
-        return _without_stubs(stays)
+        return _without_stubs(of_line)
 
     def _is_shown(self, interval: FaceInterval, found: FaceTree) -> bool:
         """Return whether an interval is long, or enough scans show it or the wall's other side."""
@@ -186,15 +184,6 @@ class _FaceSelection:
         sides = (other for other in near if self.pairing.may_be_sides(interval, other))
         scans = [interval.scans, *(other.scans for other in sides)]
         return len(np.unique(np.concatenate(scans))) >= self.merging.min_scans
-
-
-def _has_moved(interval: FaceInterval) -> bool:
-    """Return whether no fewer planar scans look through an interval than see something there."""
-    seen = interval.seen
-    if not seen.planar:
-        return False
-    through = seen.free_between(interval.low_m + CELL_M, interval.high_m - CELL_M)
-    return len(np.unique(seen.free_scan[through])) >= interval.n_scans
 
 
 def _without_stubs(found: Iterable[FaceInterval]) -> list[FaceInterval]:

@@ -3,7 +3,6 @@
 Whatever stands there is kept, so that what is no wall of the plan is not lost.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

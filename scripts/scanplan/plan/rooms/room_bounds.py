@@ -101,8 +101,7 @@ def find_partings(
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
-    In planar scans, which show no lintel and less of walls behind furniture, gaps in the line of a
-    wall part floor too (`_find_line_gaps`).
+    Gaps in the line of a wall part floor too (`_find_line_gaps`).
 
     Parameters
     ----------
@@ -139,9 +138,7 @@ def find_partings(
     whole = free_space.close_shadows(floor, END_M) if planar else floor
     free = free_space.difference_on_grid(whole, solid)
     partings = list(doors)
-    gaps_m = []
-    if planar:
-        gaps_m = _find_line_gaps(bounds, tree, free, max_door_m, unpaired_m, hidden)
+    gaps_m = _find_line_gaps(bounds, tree, free, max_door_m, unpaired_m, hidden)
     # shorter ones may be sides of what stands in a room
     is_long = [planar and wall.length_m > 2 * max_door_m for wall in bounds]
     walls = overlays.unite_areas(list(itertools.compress(strips, is_long)))

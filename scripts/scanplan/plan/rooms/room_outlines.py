@@ -33,7 +33,6 @@ def find_rooms(
     min_width_m: float,
     unpaired_m: float,
     floor: BaseGeometry | None = None,
-    planar: bool = False,
     threads: int = 1,
 ) -> list[Room]:
     """Find the rooms.
@@ -59,9 +58,6 @@ def find_rooms(
         Thickness assumed of a wall of which one side is known.
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the views, where it is known already.
-    planar : bool
-        Whether scans lie in one plane. They look through glass and far out of the building: what of
-        a room nobody was in, and hardly any wall bounds, is none of it.
     threads : int
         Cores to use.
 
@@ -80,11 +76,9 @@ def find_rooms(
     found: list[tuple[Polygon, float, bool]] = []
     taken: BaseGeometry = solid
     for part in _large_parts(seen, min_area_m2):
-        if planar:
-            part = _without_shadows(part, solid)
         drawn, outline = _draw_room(part, track, walls, strips, solid, taken, unpaired_m)
         polygons = [] if drawn is None else [drawn]
-        if planar and drawn is not None and drawn.intersects(way):
+        if drawn is not None and drawn.intersects(way):
             polygons = bare_parts.cut_bare_parts(
                 *(drawn, facing, way),
                 max_walled=1 - min_walled,
@@ -125,12 +119,6 @@ def _large_parts(floor: BaseGeometry, min_area_m2: float) -> list[Polygon]:
     """Return the parts that a floor falls into at its necks, the largest first."""
     parts = free_space.open_polygons(floor, END_M)
     return sorted((part for part in parts if part.area >= min_area_m2), key=largest_first)
-
-
-def _without_shadows(part: Polygon, solid: BaseGeometry) -> Polygon:
-    """Return a part of the floor with the shadows of what is as narrow as a chair's legs."""
-    closed = free_space.close_shadows(part, CORNER_M)
-    return _largest(free_space.difference_on_grid(closed, solid)) or part
 
 
 def _largest(geometry: BaseGeometry) -> Polygon | None:
