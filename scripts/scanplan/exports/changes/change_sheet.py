@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.change_table import summarise_tie, warn_of_others
+from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, Change
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
@@ -173,16 +174,7 @@ def _draw_table(changes: Sequence[Change], slots: Sequence[Slot]) -> Iterator[Wo
     if not changes and places:
         yield from write("title", *places[0], ("", "none", "", "", ""))
     for number, (change, place) in enumerate(zip(changes, places, strict=False), 1):
-        yield from write("title", *place, (str(number), *_say(change)))
-
-
-def _say(change: Change) -> tuple[str, str, str, str]:
-    kind = change.kind_a or change.kind_b or change.table
-    of = f"a{change.number_a}" if change.number_a >= 0 else f"b{change.number_b}"
-    by = ""
-    if np.isfinite(change.shift_m):
-        by = f"{100 * abs(change.shift_m):.1f} ± {100 * change.sigma_m:.1f}"
-    return f"{kind} {of}", change.verdict, by, f"{change.p:.2f}"
+        yield from write("title", *place, (str(number), *say_change(change)))
 
 
 def _place_tags(page: Page, tagged: Sequence[DrawnChange], marks: Sequence[Mark]) -> Iterator[Word]:
