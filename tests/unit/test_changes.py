@@ -174,6 +174,15 @@ def test_rooms_beside_a_wall_that_went_have_changed_and_others_have_not():
     assert told(compare(a, c), "room") == []
 
 
+def test_a_door_walled_up_behind_furniture_is_told_by_what_is_seen_beside_it():
+    hiding = shapely.box(5.15, 2.2, 5.6, 3.68)
+    (walled,) = told(compare(survey(), survey(doors=[], pieces=[hiding])), "opening")
+    assert (walled.verdict, walled.is_change) == (GONE, True)
+    all_of_it = shapely.box(5.15, 2.2, 5.6, 4.5)
+    (doubtful,) = told(compare(survey(), survey(doors=[], pieces=[all_of_it])), "opening")
+    assert doubtful.verdict == GONE and not doubtful.is_change and "one side" in doubtful.doubt
+
+
 def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
     a = survey()
     walled = told(compare(a, survey(doors=[])), "opening")

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from scanplan.changes import face_shifts, frames, opening_changes, room_changes, wall_changes
+from scanplan.changes.curve_shifts import find_moved_curves
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
@@ -58,7 +59,8 @@ def compare_surveys(plans: tuple[FloorPlan, FloorPlan], scans: tuple[Scans, Scan
         for plan, of, motion in zip(plans, scans, motions, strict=True)
     )
     shifts = face_shifts.measure_shifts(a, b, tie.fit)
-    changes = wall_changes.compare_walls(a, b, shifts)
+    curves = find_moved_curves(a, b, tie.fit)
+    changes = wall_changes.compare_walls(a, b, shifts, curves)
     changes += opening_changes.compare_openings(a, b)
     changes += room_changes.compare_rooms(a, b, changes)
     changes += room_changes.compare_furniture(a, b)

@@ -194,6 +194,7 @@ def _find_flush_sides(opening: _Opening, by: Survey) -> BoolArray:
         inner_m, flank_m = (
             off_m[cells][np.isfinite(off_m[cells])] for cells in (is_inner, is_flank)
         )
-        if len(inner_m) >= FEW and len(flank_m) >= FEW:
+        # each cell is the median of some returns: one tells where a leaf is, beside furniture
+        if len(inner_m) and len(flank_m) >= FEW:
             flush.append(bool(abs(np.median(inner_m) - np.median(flank_m)) <= _FLUSH_M))
     return np.array(flush, bool)
