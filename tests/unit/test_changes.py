@@ -24,6 +24,7 @@ from scanplan.changes import (
 )
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.surveys import RaySight
 from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME
 from scanplan.errors import StageError
 from scanplan.project.dataset import pair_surveys
@@ -45,7 +46,7 @@ def compare(a, b):
     changes = wall_changes.compare_walls(a, b, shifts)
     changes += opening_changes.compare_openings(a, b)
     changes += room_changes.compare_rooms(a, b, changes)
-    return changes + room_changes.compare_furniture(a, b)
+    return changes + room_changes.compare_pieces(a, b, schemas.PIECE)
 
 
 def told(changes, table, *wanted):
@@ -283,8 +284,9 @@ def test_floors_without_walls_or_rays_have_a_table_without_rows(tmp_path):
     tables.write_table(path, schemas.CHANGES, change_table.tabulate_changes([]), allow_empty=True)
     assert len(tables.read_table(path, schemas.CHANGES, allow_empty=True)["p"]) == 0
     a, blind = survey(), survey()
-    none = replace(blind.rays, xyz_m=np.empty((0, 3)), azimuth_rad=np.empty(0))
-    object.__setattr__(blind, "rays", replace(none, first=np.zeros_like(blind.rays.first)))
+    none = replace(blind.sight.rays, xyz_m=np.empty((0, 3)), azimuth_rad=np.empty(0))
+    sight = RaySight(replace(none, first=np.zeros_like(none.first)))
+    object.__setattr__(blind, "sight", sight)
     assert [c for c in compare(a, blind) if c.verdict in verdicts.CHANGES] == []
 
 

@@ -114,3 +114,13 @@ def changes_of_datasets(wildcards):
         for earlier, later in pairs
         for suffix in CHANGES
     ]
+
+
+def design_of(wildcards):
+    """The design that the job's dataset is held against."""
+    return DATASETS[wildcards.dataset].design
+
+
+def deviations_of_datasets(wildcards):
+    """How every given dataset differs from its design."""
+    return [file for of in GIVEN.values() for file in or_end(list_deviations, of)]
