@@ -22,7 +22,7 @@ _MOST_ROWS = 40  # of the table: more are in the files beside
 _LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
 _TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
 _HEADS = ("No.", "Element", "Verdict", "By, cm", "p")
-_ENDS_MM = (0.0, 6.0, 26.0, 38.0, 56.0)  # where the columns of the table begin
+_COLUMNS_MM = (5.0, 17.0, 15.0, 16.0, 7.0)  # wide: of the table, a slot in all
 
 
 @dataclass(frozen=True)
@@ -131,11 +131,11 @@ def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[
     ]
 
     def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
-        for text, end in zip(texts, _ENDS_MM, strict=True):
-            place = np.array([x + Paper.GAP + end, y])
-            yield Word(
-                kind, shorten_text(text, Letters.SMALL, 19.0), place, Letters.SMALL, 0.0, 0.0
-            )
+        for text, width in zip(texts, _COLUMNS_MM, strict=True):
+            place = np.array([x + Paper.GAP, y])
+            short = shorten_text(text, Letters.SMALL, width - Paper.GAP)
+            yield Word(kind, short, place, Letters.SMALL, 0.0, 0.0)
+            x += width
 
     for slot in slots:
         yield from write("note", slot.x_mm, slot.y_mm - Paper.ROW / 2, _HEADS)
