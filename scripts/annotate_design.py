@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from scanplan.exports.changes import annotated_ifc, as_built_facts, bcf_topics
+from scanplan.exports.changes import annotated_ifc, bcf_topics, model_facts
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
@@ -33,8 +33,8 @@ def annotate_design(
     columns = tables.read_table(deviations, schemas.DEVIATIONS, allow_empty=True)
     floor_m = float(json.loads(tables.read_note(deviations, schemas.DEVIATIONS, "floor_m")))
     stamps = tables.read_table(evidence, schemas.EVIDENCE, allow_empty=True)["t_ns"]
-    facts = as_built_facts.gather_properties(columns)
-    found = as_built_facts.list_topics(columns, floor_m)
+    facts = model_facts.gather_deviations(columns)
+    found = model_facts.list_topics(columns, floor_m)
     name = Path(design).stem
     at_ns = int(stamps.min()) if len(stamps) else 0
     atomic.write_text(model, annotated_ifc.annotate_model(design, "Scanplan_AsBuilt", facts))

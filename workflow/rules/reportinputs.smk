@@ -112,8 +112,14 @@ def changes_of_datasets(wildcards):
     return [
         f"results/{later}/changes/{earlier}/changes.{suffix}"
         for earlier, later in pairs
-        for suffix in CHANGES
+        for suffix in (*CHANGES, *with_model(later))
     ]
+
+
+def with_model(dataset):
+    """The suffix of what a dataset's building model says, where it has one."""
+    formats = DATASETS[dataset].settings["plan"]["export"]["formats"]
+    return ("ifc",) if "ifc" in formats else ()
 
 
 def design_of(wildcards):

@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.frame_fit import FrameFit
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import REACH_M, SIGMAS
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.types import BoolArray, FloatArray
 
@@ -120,7 +121,7 @@ def _feel(
 ) -> tuple[BoolArray, FloatArray]:
     """Return from which places (n,) a line lies across, and how far, of those (k,)."""
     ends_m = np.stack([at_m - REACH_M * normals, at_m + REACH_M * normals], axis=1)
-    meets = shapely.intersection(shapely.linestrings(ends_m), axis)
+    meets = overlays.cross_lines(shapely.linestrings(ends_m), axis)
     met = (shapely.get_type_id(meets) == shapely.GeometryType.POINT) & ~shapely.is_empty(meets)
     way_m = shapely.get_coordinates(np.asarray(meets)[met]) - at_m[met]
     return met, np.einsum("nj,nj->n", way_m, normals[met])

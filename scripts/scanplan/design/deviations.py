@@ -165,7 +165,7 @@ class _Clearances:
         beyond = overlays.subtract_lines(feeler, overlays.buffer_shapes(own, _BESIDE_M))
         met = self._grounds[self._tree.query(beyond, predicate="intersects")]
         begin = shapely.Point(shapely.get_coordinates(beyond)[0])
-        far_m = [begin.distance(shapely.intersection(beyond, of)) for of in met]
+        far_m = [begin.distance(overlays.intersect_lines(beyond, of)) for of in met]
         # a lining that touches it is passed by
         return min((m + _BESIDE_M for m in far_m if m > 0), default=_FARTHEST_M)
 

@@ -49,7 +49,7 @@ class DrawnSight:
         start = shapely.get_point(feelers, 0)
         found = np.full((len(feelers), N_ROWS), np.nan)
         for row, solid in enumerate(self._rows):
-            way_m = shapely.distance(start, shapely.intersection(feelers, solid))
+            way_m = shapely.distance(start, overlays.intersect_lines(feelers, solid))
             is_before = np.isfinite(way_m) & (way_m > 0)
             found[is_before, row] = reach_m - way_m[is_before]
         return found

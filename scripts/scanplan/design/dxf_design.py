@@ -53,6 +53,7 @@ _IN_LINE_M = 0.02  # of walls on one line
 _COVERED = 0.95  # of the ground between two sides that is matter
 _SAGITTA_M = 0.005  # of chords for arcs
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
+_SKIN_M = 1e-3  # what lines that meet are drawn apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,10 +250,12 @@ def _list_gaps(
 
 def _find_kind(line_m: FloatArray, thickness_m: float, lines: dict[str, Array]) -> str | None:
     ground = overlays.buffer_shapes(shapely.LineString(line_m), thickness_m / 2, cap_style="flat")
-    inner = overlays.buffer_shapes(ground, -_GRID_M)
+    # what is drawn in it may end at its sides
+    around = overlays.buffer_shapes(ground, _SKIN_M)
     for kind in ("door", "window"):
-        if len(lines[kind]) and shapely.intersects(inner, lines[kind]).any():
+        if len(lines[kind]) and shapely.intersects(around, lines[kind]).any():
             return kind
+    inner = overlays.buffer_shapes(ground, -_SKIN_M)
     is_crossed = len(lines["wall"]) and shapely.intersects(inner, lines["wall"]).any()
     width_m = np.hypot(*(line_m[1] - line_m[0]))
     return "passage" if not is_crossed and width_m <= _PASSAGE_M else None

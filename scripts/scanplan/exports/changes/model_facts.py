@@ -1,24 +1,27 @@
-"""What building models and topics state of deviations from a design, of their table."""
+"""What building models and topics state of changes, and of deviations from a design."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import shapely
 
-from scanplan.changes.verdicts import NOT_SEEN
+from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME
 from scanplan.design.deviations import FAULTS, UNDECIDED, WITHIN
 from scanplan.exports.changes.annotated_ifc import Properties
 from scanplan.exports.changes.bcf_topics import Topic
-from scanplan.types import Columns
+from scanplan.types import Array, Columns
 
-_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, NOT_SEEN)
+_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, SAME, NOT_SEEN)
 """Of an element with several stretches the gravest verdict is stated, and the longest of it."""
-_STATED = {"p": "probability", "shift_m": "deviation_m", "sigma_m": "standard_deviation_m"}
-_STATED |= {"limit_m": "tolerance_m", "built_m2": "built_area"}
+_OF_DESIGN = {"p": "probability", "shift_m": "deviation_m", "sigma_m": "standard_deviation_m"}
+_OF_DESIGN |= {"limit_m": "tolerance_m", "built_m2": "built_area"}
+_OF_DESIGN |= {"kind_built": "kind_built", "doubt": "doubt"}
+_OF_CHANGE = {"p": "probability", "shift_m": "shift_m", "sigma_m": "standard_deviation_m"}
+_OF_CHANGE |= {"kind_a": "kind_before", "doubt": "doubt"}
 
 
-def gather_properties(columns: Columns) -> dict[str, Properties]:
+def gather_deviations(columns: Columns) -> dict[str, Properties]:
     """Return what is stated of each element of a design, by GlobalId.
 
     Parameters
@@ -26,32 +29,54 @@ def gather_properties(columns: Columns) -> dict[str, Properties]:
     columns : dict of str to (n,) array
         Those of `schemas.DEVIATIONS`.
     """
-    rows = range(len(columns["guid"]))
+    return _gather(columns, columns["guid"].tolist(), columns["fault"], _OF_DESIGN)
+
+
+def gather_changes(columns: Columns, ids: Columns) -> dict[str, Properties]:
+    """Return what is stated of each element of the later survey, by GlobalId.
+
+    Parameters
+    ----------
+    columns : dict of str to (n,) array
+        Those of `schemas.CHANGES`.
+    ids : dict of str to (m,) array
+        Those of `schemas.ELEMENT_IDS`, of the later survey.
+    """
+    keys = zip(ids["kind"].tolist(), ids["number"].tolist(), strict=True)
+    known = dict(zip(keys, ids["global_id"].tolist(), strict=True))
+    rows = zip(columns["element"].tolist(), columns["number_b"].tolist(), strict=True)
+    return _gather(columns, [known.get(key, "") for key in rows], columns["likely"], _OF_CHANGE)
+
+
+def _gather(
+    columns: Columns, guids: Sequence[str], likely: Array, stated: Mapping[str, str]
+) -> dict[str, Properties]:
     by_guid: dict[str, list[int]] = {}
-    for row in rows:
-        if columns["guid"][row]:
-            by_guid.setdefault(columns["guid"][row], []).append(row)
-    return {guid: _state(columns, of) for guid, of in sorted(by_guid.items())}
+    for row, guid in enumerate(guids):
+        if guid:
+            by_guid.setdefault(guid, []).append(row)
 
-
-def _state(columns: Columns, rows: list[int]) -> Properties:
     def rank(row: int) -> tuple[bool, int, float]:
         verdict = columns["verdict"][row]
-        is_doubtful = verdict in FAULTS and not columns["fault"][row]
+        is_doubtful = verdict in (*FAULTS, *CHANGES) and not likely[row]
         return is_doubtful, _GRAVEST.index(verdict), -_size(columns, row)
 
-    row = min(rows, key=rank)
-    stated: dict[str, str | float | bool] = {
+    gravest = {guid: min(rows, key=rank) for guid, rows in sorted(by_guid.items())}
+    return {guid: _state(columns, row, likely, stated) for guid, row in gravest.items()}
+
+
+def _state(columns: Columns, row: int, likely: Array, stated: Mapping[str, str]) -> Properties:
+    values: dict[str, str | float | bool] = {
         "verdict": columns["verdict"][row],
-        "differs": bool(columns["fault"][row]),
+        "differs": bool(likely[row]),
     }
-    for name, label in _STATED.items():
-        if math.isfinite(columns[name][row]):
-            stated[label] = round(float(columns[name][row]), 4)
-    for name in ("kind_built", "doubt"):
-        if columns[name][row]:
-            stated[name] = columns[name][row]
-    return stated
+    for name, label in stated.items():
+        value = columns[name][row]
+        if isinstance(value, str) and value:
+            values[label] = value
+        elif not isinstance(value, str) and math.isfinite(value):
+            values[label] = round(float(value), 4)
+    return values
 
 
 def _size(columns: Columns, row: int) -> float:
