@@ -9,7 +9,7 @@ import shapely
 from helpers import floorplan_making
 from helpers.changing_floor import survey
 from scanplan.changes import face_shifts, wall_changes
-from scanplan.changes.curve_shifts import find_moved_curves
+from scanplan.changes.curve_shifts import find_moved_curves, join_curves
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.verdicts import GONE, MOVED, NEW, SAME
@@ -49,7 +49,8 @@ def surveyed(*, has_arc=True, hidden=(), by_m=(0.0, 0.0)):
 def compare(a, b):
     fit = fit_frame(a.faces, b.faces, PlaneMotion())
     curves = find_moved_curves(a, b, fit)
-    return wall_changes.compare_walls(a, b, face_shifts.measure_shifts(a, b, fit), curves)
+    changes = wall_changes.compare_walls(a, b, face_shifts.measure_shifts(a, b, fit))
+    return join_curves(changes, curves)
 
 
 def test_a_curved_wall_that_stands_is_the_same_all_along():

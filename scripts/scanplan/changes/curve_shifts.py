@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.frame_fit import FrameFit
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import REACH_M, SIGMAS
+from scanplan.changes.verdicts import CHANGES, MOVED, REACH_M, SIGMAS, Change
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.types import BoolArray, FloatArray
@@ -71,6 +71,49 @@ def find_moved_curves(a: Survey, b: Survey, fit: FrameFit) -> Sequence[CurveShif
         if one.is_thick == other.is_thick
     ]
     return [shift for shift in found if shift is not None]
+
+
+def join_curves(changes: Sequence[Change], curves: Sequence[CurveShift]) -> list[Change]:
+    """Return what became of walls, with each curved wall that has moved as one.
+
+    Parameters
+    ----------
+    changes : sequence of Change
+        Of walls, the pieces of curved ones each for itself.
+    """
+    joined = list(changes)
+    for curve in curves:
+        joined = _join_pieces(joined, curve)
+    return joined
+
+
+def _join_pieces(changes: list[Change], curve: CurveShift) -> list[Change]:
+    """Return changes with the pieces of a curved wall as one that has moved, if rays say so.
+
+    They do where they go through a piece of it, as it was or as it is.
+    """
+    pieces = [
+        change
+        for change in changes
+        if change.number_a == curve.number_a
+        or (change.number_a < 0 and change.number_b == curve.number_b)
+    ]
+    p = max((piece.p for piece in pieces if piece.verdict in CHANGES), default=0.0)
+    if not p:
+        return changes
+    x_m, y_m = curve.moved_m.tolist()
+    moved = Change(
+        "wall",
+        curve.number_a,
+        curve.number_b,
+        MOVED,
+        p,
+        curve.axis,
+        moved_m=(x_m, y_m),
+        shift_m=math.hypot(x_m, y_m),
+        sigma_m=curve.sigma_m,
+    )
+    return [moved, *(change for change in changes if change not in pieces)]
 
 
 def _list_curves(survey: Survey) -> Iterator[_Curve]:

@@ -1,18 +1,17 @@
 """Walls of two surveys compared: stretch by stretch, by their faces first, then by rays."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 
 from scanplan.changes import ray_cells, verdicts
-from scanplan.changes.curve_shifts import CurveShift
 from scanplan.changes.face_shifts import FaceShifts
 from scanplan.changes.ray_cells import CELL_M, Later
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGES, GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -88,9 +87,7 @@ class _Shifts:
         return np.abs(self.shift_m) > SIGMAS * self.sigma_m
 
 
-def compare_walls(
-    a: Survey, b: Survey, shifts: FaceShifts, curves: Sequence[CurveShift] = ()
-) -> list[Change]:
+def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
     """Return what became of the walls of a, and of those of b where a has none.
 
     Parameters
@@ -99,45 +96,11 @@ def compare_walls(
         In one frame.
     shifts : FaceShifts
         Of their faces, seen from those of a.
-    curves : sequence of CurveShift
-        Curved walls of a that may stand elsewhere in b.
     """
     gone = list(_compare(a, b, shifts))
     new = [change.turned() for change in _compare(b, a, shifts.turned())]
     # what faces of both show is told by the walls of a
-    changes = gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
-    for curve in curves:
-        changes = _join_curve(changes, curve)
-    return changes
-
-
-def _join_curve(changes: list[Change], curve: CurveShift) -> list[Change]:
-    """Return changes with the pieces of a curved wall as one that has moved, if rays say so.
-
-    They do where they go through a piece of it, as it was or as it is.
-    """
-    pieces = [
-        change
-        for change in changes
-        if change.number_a == curve.number_a
-        or (change.number_a < 0 and change.number_b == curve.number_b)
-    ]
-    p = max((piece.p for piece in pieces if piece.verdict in CHANGES), default=0.0)
-    if not p:
-        return changes
-    x_m, y_m = curve.moved_m.tolist()
-    moved = Change(
-        "wall",
-        curve.number_a,
-        curve.number_b,
-        MOVED,
-        p,
-        curve.axis,
-        moved_m=(x_m, y_m),
-        shift_m=math.hypot(x_m, y_m),
-        sigma_m=curve.sigma_m,
-    )
-    return [moved, *(change for change in changes if change not in pieces)]
+    return gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
 
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
