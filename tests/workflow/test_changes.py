@@ -82,8 +82,9 @@ def test_all_files_are_there_and_the_page_stands_alone(compared):
 
 def test_the_later_model_says_which_wall_moved(compared):
     path = compared.folder / "results/after/changes/before/changes.ifc"
-    walls = ifcopenshell.open(path).by_type("IfcWall")
-    stated = [ifcopenshell.util.element.get_psets(wall).get("Scanplan_Changes") for wall in walls]
+    model = ifcopenshell.open(path)
+    sets = [ifcopenshell.util.element.get_psets(wall) for wall in model.by_type("IfcWall")]
+    stated = [of.get("Scanplan_Changes") for of in sets]
     moved = [of for of in stated if of and of["Verdict"] == "moved"]
     assert len(moved) == 1 and moved[0]["Differs"]
     assert abs(moved[0]["Shift"]) == pytest.approx(NEW_M - OLD_M, abs=0.02)
