@@ -22,7 +22,8 @@ _MOST_ROWS = 40  # of the table: more are in the files beside
 _LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
 _TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
 _HEADS = ("No.", "Element", "Verdict", "By, cm", "p")
-_COLUMNS_MM = (5.0, 17.0, 15.0, 16.0, 7.0)  # wide: of the table, a slot in all
+_COLUMNS_MM = (6.0, 16.0, 14.5, 16.0, 7.5)  # wide: of the table, a slot in all
+_BROAD = 1.25  # what letters are reckoned with beyond what those of numbers take
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[
     def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
         for text, width in zip(texts, _COLUMNS_MM, strict=True):
             place = np.array([x + Paper.GAP, y])
-            short = shorten_text(text, Letters.SMALL, width - Paper.GAP)
+            short = shorten_text(text, Letters.SMALL, _BROAD * width)
             yield Word(kind, short, place, Letters.SMALL, 0.0, 0.0)
             x += width
 
