@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from scanplan.changes import change_table, comparison
 from scanplan.exports import drawing, dxf, svg
-from scanplan.exports.changes import change_geojson, change_sheet
+from scanplan.exports.changes import change_geojson, change_sheet, compared_sheet
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
@@ -70,7 +70,7 @@ def compare_surveys(
     tied = change_table.summarise_tie(found.tie)
     lines = change_table.summarise_changes(found.changes)
     warning = change_table.warn_of_others(found.tie)
-    facts = change_sheet.ComparedFacts(
+    facts = compared_sheet.ComparedFacts(
         settings["project"] or "", (read_day(a), read_day(b)), version
     )
     sheet = change_sheet.compose_change_sheet(found, facts)
@@ -85,7 +85,7 @@ def compare_surveys(
         allow_empty=True,
         notes=change_table.state_tie(found),
     )
-    geojson = change_geojson.format_changes(title, columns, "; ".join(summary[1:]))
+    geojson = change_geojson.format_changes(title, "change", columns, "; ".join(summary[1:]))
     atomic.write_text(outputs["geojson"], geojson)
     atomic.write_text(outputs["svg"], drawn)
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))

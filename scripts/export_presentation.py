@@ -51,11 +51,11 @@ def export_presentation(
         north_deg=settings["north_deg"],
     )
     drafting = make_draft_settings(settings["max_change_m"], catalogue)
-    regular, changes = draft_plan(measured, drafting)
+    regular, drafted = draft_plan(measured, drafting)
     turn_deg = None if settings["turn"] else 0.0
     overview = compose_overview(measured, regular, facts, turn_deg=turn_deg)
     facts = replace(facts, of=1 if overview is None else 2)
-    sheet = compose_presentation(measured, regular, changes, facts, turn_deg=turn_deg)
+    sheet = compose_presentation(measured, regular, drafted, facts, turn_deg=turn_deg)
     figures = [drawing.draw_sheet(page) for page in (sheet, overview) if page is not None]
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     title = f"Floor plan of {sheet.name}"
@@ -65,8 +65,8 @@ def export_presentation(
     columns = {column: regular.walls[column] for column in schemas.PRESENTATION.columns}
     tables.write_table(outputs["walls"], schemas.PRESENTATION, columns, allow_empty=True)
     log.log_line(
-        f"export_presentation: {changes.n_square} of {changes.n_walls} walls square, none moved by"
-        f" more than {1000 * changes.moved_m:.0f} mm; 1:{sheet.page.scale} on {sheet.page.name}"
+        f"export_presentation: {drafted.n_square} of {drafted.n_walls} walls square, none moved by"
+        f" more than {1000 * drafted.moved_m:.0f} mm; 1:{sheet.page.scale} on {sheet.page.name}"
     )
 
 

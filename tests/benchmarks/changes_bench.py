@@ -10,7 +10,7 @@ import math
 import random
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ import yaml
 from scanplan.changes import comparison
 from scanplan.changes.verdicts import GONE, MOVED, NEW, Change
 from scanplan.plan import floorplan_files
+from scanplan.plan.floorplan import FloorPlan
 from scanplan.store import registered_scans, tables
 
 Drawing = dict[str, Any]
@@ -43,7 +44,8 @@ SURVEYS = (
     *("mix1_vlp", "mix1_las", "mix2_vlp", "mix2_ous", "part_vlp"),
 )
 """By what was done to the floor (a: nothing yet) and the sensor; `part` is a shorter way."""
-_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+"""Of a plan: what is compared."""
 _NEAR_M = 0.4  # of a change from where it was made: a wall moved by 30 cm, and what plans err by
 _FOUND = 0.5  # of the length of an edit that rows of its verdict cover
 _PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
@@ -150,14 +152,16 @@ def _is_unseen(edit: Edit, changes: Sequence[Change]) -> bool:
 
 
 def _compare(folder: Path, before: str, after: str) -> comparison.Comparison:
-    plans, scans = [], []
-    for name in (before, after):
-        results = folder / "results" / name
-        files = {table: results / f"plan/{table}.parquet" for table in _TABLES}
-        plans.append(floorplan_files.read_floorplan(files, name))
-        registered = registered_scans.read_registered_scans(results / "registration.parquet")
-        scans.append((tables.ScanStore(results / "scans.parquet"), registered))
+    plans, scans = zip(*(read_survey(folder / "results" / n) for n in (before, after)), strict=True)
     return comparison.compare_surveys((plans[0], plans[1]), (scans[0], scans[1]))
+
+
+def read_survey(results: Path) -> tuple[FloorPlan, comparison.Scans]:
+    """Return the plan and the scans of a survey's results."""
+    files = {table: results / f"plan/{table}.parquet" for table in TABLES}
+    plan = floorplan_files.read_floorplan(files, results.name)
+    registered = registered_scans.read_registered_scans(results / "registration.parquet")
+    return plan, (tables.ScanStore(results / "scans.parquet"), registered)
 
 
 def _make_plan(project: Path, folder: Path, name: str) -> None:
@@ -174,10 +178,15 @@ def _make_plan(project: Path, folder: Path, name: str) -> None:
         simulated["site"] = {"route": "rooms"}
     if kind == "furn":
         simulated["site"] = {"leaves": 0.6}
+    plan_survey(project, folder, name, simulated)
+
+
+def plan_survey(project: Path, folder: Path, name: str, simulated: Mapping[str, Any]) -> None:
+    """Simulate a survey and make its plan, as far as both are not there."""
     survey = folder / f"surveys/{name}.yaml"
     survey.parent.mkdir(parents=True, exist_ok=True)
-    survey.write_text(yaml.safe_dump({"simulate": simulated}))
-    wanted = [f"results/{name}/plan/{table}.parquet" for table in _TABLES]
+    survey.write_text(yaml.safe_dump({"simulate": dict(simulated)}))
+    wanted = [f"results/{name}/plan/{table}.parquet" for table in TABLES]
     command = [sys.executable, "-m", "snakemake", "-s", str(project / "Snakefile"), *wanted]
     command += ["--cores", "2", "--config", f"dataset={survey.resolve()}"]
     subprocess.run(command, cwd=folder, check=True)

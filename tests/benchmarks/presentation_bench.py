@@ -53,10 +53,10 @@ def bench(results: Path, truths: Path, names: Sequence[str], settings: Settings)
         )
         files = {table: results / name / f"plan/{table}.parquet" for table in _TABLES}
         plan = floorplan_files.read_floorplan(files, name)
-        regular, changes = draft_plan(plan, drafting)
+        regular, drafted = draft_plan(plan, drafting)
         measured = score_files.read_plan(results / name)
         rows.append([_measure(t, placed) for t in (measured, _replace(measured, regular))])
-        print(f"{name}: {_format(rows[-1])}, moved by {1000 * changes.moved_m:.0f} mm", flush=True)
+        print(f"{name}: {_format(rows[-1])}, moved by {1000 * drafted.moved_m:.0f} mm", flush=True)
     means = [
         {key: float(np.nanmean([row[number][key] for row in rows])) for key in _SHOWN}
         for number in (0, 1)

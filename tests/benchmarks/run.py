@@ -11,6 +11,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py confidence FOLDER
        run.py next_visit FOLDER [SURVEY ...]
        run.py changes FOLDER [SURVEY ...]
+       run.py design FOLDER
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py presentation RESULTS TRUTHS [DRIVE ...]
        run.py ids RESULTS FOLDER SURVEY ...
@@ -63,6 +64,8 @@ element by element.
 `next_visit` cuts drives short, drives to where their plans say that a second visit should stand,
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
 `guard`, with any seed; drives and plans are kept in FOLDER.
+
+`design` holds surveys of altered copies of published building models against these.
 
 `changes` compares surveys of the demo office with those of it after it was rebuilt, by other
 sensors and in another frame, and counts what is told rightly; surveys are kept in FOLDER.
@@ -214,6 +217,14 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
+def bench_design(folder: str) -> None:
+    """What is told of buildings that were built otherwise than designed."""
+    import design_bench
+
+    models = (ROOT.parent / "shared/data/buildings").resolve()
+    design_bench.bench(ROOT, Path(folder), models)
+
+
 def bench_changes(folder: str, *names: str) -> None:
     """What is told of a floor that was rebuilt, against what was done to it."""
     import changes_bench
@@ -300,6 +311,7 @@ APART: dict[str, Callable[..., None]] = {
     "growth": bench_growth,
     "pipeline": bench_pipeline,
     "changes": bench_changes,
+    "design": bench_design,
     "sheets": bench_sheets,
     "ids": bench_ids,
 }

@@ -11,7 +11,7 @@ import shapely
 
 from helpers import floorplan_making
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.surveys import Survey
+from scanplan.changes.surveys import RaySight, Survey
 from scanplan.plan.floorplan import make_floorplan
 from scanplan.rays.ray_set import gather_rays
 
@@ -117,7 +117,7 @@ def survey(
         {i: np.array([*place, 0.0]) for i, place in enumerate(sensors)},
         planar=True,
     )
-    return Survey(plan, rays, motion)
+    return Survey(plan, RaySight(rays), motion)
 
 
 def _faces(rows):

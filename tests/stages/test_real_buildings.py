@@ -7,8 +7,9 @@ import open3d as o3d
 import pytest
 import shapely
 
+from scanplan.design import ifc_file
 from scanplan.errors import StageError
-from scanplan.lab.buildings import building, building_route, ifc_file
+from scanplan.lab.buildings import building, building_route
 
 pytestmark = pytest.mark.recordings
 SLICE_M = 0.4

@@ -9,8 +9,9 @@ import shapely
 
 from helpers import box_making, ifc_making
 from helpers import simple_rooms as drawn
+from scanplan.design import ifc_file
 from scanplan.errors import StageError
-from scanplan.lab.buildings import building, extrusion, ifc_file
+from scanplan.lab.buildings import building, extrusion
 
 IFC = ifc_making.model()
 ROOM = box_making.room()

@@ -24,6 +24,7 @@ from scanplan.changes import (
 )
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.surveys import RaySight
 from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME
 from scanplan.errors import StageError
 from scanplan.project.dataset import pair_surveys
@@ -45,7 +46,7 @@ def compare(a, b):
     changes = wall_changes.compare_walls(a, b, shifts)
     changes += opening_changes.compare_openings(a, b)
     changes += room_changes.compare_rooms(a, b, changes)
-    return changes + room_changes.compare_furniture(a, b)
+    return changes + room_changes.compare_pieces(a, b, schemas.PIECE)
 
 
 def told(changes, table, *wanted):
@@ -174,6 +175,15 @@ def test_rooms_beside_a_wall_that_went_have_changed_and_others_have_not():
     assert told(compare(a, c), "room") == []
 
 
+def test_a_door_walled_up_behind_furniture_is_told_by_what_is_seen_beside_it():
+    hiding = shapely.box(5.15, 2.2, 5.6, 3.68)
+    (walled,) = told(compare(survey(), survey(doors=[], pieces=[hiding])), "opening")
+    assert (walled.verdict, walled.is_change) == (GONE, True)
+    all_of_it = shapely.box(5.15, 2.2, 5.6, 4.5)
+    (doubtful,) = told(compare(survey(), survey(doors=[], pieces=[all_of_it])), "opening")
+    assert doubtful.verdict == GONE and not doubtful.is_change and "one side" in doubtful.doubt
+
+
 def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
     a = survey()
     walled = told(compare(a, survey(doors=[])), "opening")
@@ -274,8 +284,9 @@ def test_floors_without_walls_or_rays_have_a_table_without_rows(tmp_path):
     tables.write_table(path, schemas.CHANGES, change_table.tabulate_changes([]), allow_empty=True)
     assert len(tables.read_table(path, schemas.CHANGES, allow_empty=True)["p"]) == 0
     a, blind = survey(), survey()
-    none = replace(blind.rays, xyz_m=np.empty((0, 3)), azimuth_rad=np.empty(0))
-    object.__setattr__(blind, "rays", replace(none, first=np.zeros_like(blind.rays.first)))
+    none = replace(blind.sight.rays, xyz_m=np.empty((0, 3)), azimuth_rad=np.empty(0))
+    sight = RaySight(replace(none, first=np.zeros_like(none.first)))
+    object.__setattr__(blind, "sight", sight)
     assert [c for c in compare(a, blind) if c.verdict in verdicts.CHANGES] == []
 
 

@@ -44,6 +44,13 @@ def test_the_demo_is_a_run_without_a_dataset():
     ]
 
 
+def test_a_difference_is_the_target_of_changes_of_the_surveys_in_their_order():
+    asked = understood("diff", "before", "my after.bag", "--cores", "1")
+    assert list(asked.targets) == ["changes"] and asked.cores == 1
+    assert asked.config == ['dataset=["before", "my after.bag"]']
+    assert understood("./diff").config == ['dataset=["./diff"]']
+
+
 def test_options_are_those_of_snakemake():
     asked = understood(
         "Erdgeschoß 1/", "b", "--cores", "4", "--replace", "b", "--configfile", "c.yaml"
@@ -61,6 +68,8 @@ def test_options_are_those_of_snakemake():
         (["a", "--cores", "²"], "--cores: ² is no number"),
         (["a", "--cores"], "--cores: expected one argument"),
         (["demo", "a"], "./demo"),
+        (["diff"], "no recording is given"),
+        (["diff", "a"], "diff: one survey alone"),
         (
             ["a", "--dry-run"],
             "--dry-run: no option of scanplan; Snakemake's: snakemake --snakefile",

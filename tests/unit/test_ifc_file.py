@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from helpers import ifc_making
+from scanplan.design import ifc_file
 from scanplan.errors import StageError
-from scanplan.lab.buildings import ifc_file
 
 DATA = ifc_making.model()
 

@@ -18,8 +18,8 @@ SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
 
 def composed(**tables):
     measured = floorplan_making.plan(**tables)
-    regular, changes = draft_plan(measured, SETTINGS)
-    return compose_presentation(measured, regular, changes)
+    regular, drafted = draft_plan(measured, SETTINGS)
+    return compose_presentation(measured, regular, drafted)
 
 
 def ground(sheet, kind):
@@ -128,12 +128,12 @@ def test_curved_walls_stay_as_measured_and_are_drawn_in_arcs(thickness_m):
     jambs_m = trace_arc(np.array(first[0]).reshape(2, 2), np.zeros(2))[[4, 7]]
     door = (tuple(jambs_m.ravel()), 0, "door", 0.0, 2.0, 0, -1)
     measured = quarter_disc.quarter(walls, openings=floorplan_making.openings([door]))
-    regular, changes = draft_plan(measured, SETTINGS)
+    regular, drafted = draft_plan(measured, SETTINGS)
     for name in ("x0_m", "y0_m", "x1_m", "y1_m", "thickness_m", *schemas.ARC):
         np.testing.assert_array_equal(regular.walls[name][0], measured.walls[name][0])
     assert centrelines_m(regular.openings)[0] == pytest.approx(jambs_m)
-    assert changes.moved_m == changes.width_m == 0
-    sheet = compose_presentation(measured, regular, changes)
+    assert drafted.moved_m == drafted.width_m == 0
+    sheet = compose_presentation(measured, regular, drafted)
     solid = [path for mark in sheet.marks if mark.kind == "poche" for path in mark.bent_paths]
     # about a quarter of a circle, but for the door
     assert max(abs(path[:, 2]).max() for path in solid) > np.tan(np.radians(60) / 4)

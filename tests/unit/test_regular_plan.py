@@ -65,9 +65,9 @@ TRIED = (8, 10, 12, 10)
 )
 def test_a_wall_is_straightened_where_what_is_known_of_it_allows(off_deg, sigma_m, is_square):
     walls = [*FRAME, (turned(TRIED, off_deg), 0.1)]
-    regular, changes = draft_plan(plan_of(walls, [SIGMA_M, SIGMA_M, sigma_m]), SETTINGS)
+    regular, drafted = draft_plan(plan_of(walls, [SIGMA_M, SIGMA_M, sigma_m]), SETTINGS)
     assert angle_deg(regular, 2) == pytest.approx(0 if is_square else off_deg, abs=1e-6)
-    assert changes.n_square == 2 + is_square
+    assert drafted.n_square == 2 + is_square
     assert regular.walls["turned_deg"][2] == pytest.approx(-off_deg * is_square, abs=1e-6)
     # about its middle: half of its length times the sine
     moved_m = 2 * np.sin(np.radians(off_deg)) if is_square else 0
@@ -84,21 +84,21 @@ def test_a_building_out_of_square_is_left_so():
     crooked = [(turned((8, y, 12, y), 0.3), 0.1) for y in (10, 12, 14, 16)]
     # of less than its sigma nobody knows
     maybe = (turned((8, 18, 12, 18), 0.1), 0.1)
-    regular, changes = draft_plan(plan_of([*FRAME, *crooked, maybe]), SETTINGS)
+    regular, drafted = draft_plan(plan_of([*FRAME, *crooked, maybe]), SETTINGS)
     turned_deg = [angle_deg(regular, wall) for wall in range(7)]
     assert turned_deg == pytest.approx([0, 90, *[0.3] * 4, 0], abs=1e-6)
-    assert changes.n_square == 3
+    assert drafted.n_square == 3
 
 
 def test_two_pieces_of_a_wall_lie_in_one_line_the_surer_one_moving_less():
     pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 10.03, 11, 10.03), 0.1)]
     sigmas_m = [SIGMA_M, SIGMA_M, 0.005, 0.01]
-    regular, changes = draft_plan(plan_of([*FRAME, *pieces], sigmas_m), SETTINGS)
+    regular, drafted = draft_plan(plan_of([*FRAME, *pieces], sigmas_m), SETTINGS)
     # the mean, weighed by 1 / 0.005^2 and 1 / 0.01^2: a fifth of the way
     y_m = centrelines_m(regular.walls)[2:, :, 1]
     np.testing.assert_allclose(y_m, 10.006, atol=1e-6)
     np.testing.assert_allclose(regular.walls["moved_m"][2:], [0.006, 0.024], atol=1e-6)
-    assert changes.n_through == 2 and changes.moved_m == pytest.approx(0.024, abs=1e-6)
+    assert drafted.n_through == 2 and drafted.moved_m == pytest.approx(0.024, abs=1e-6)
 
 
 def test_pieces_of_another_thickness_are_flush():
@@ -112,19 +112,19 @@ def test_pieces_of_another_thickness_are_flush():
 
 def test_a_step_that_is_known_stays():
     pieces = [((2, 10.0, 6, 10.0), 0.1), ((7, 10.04, 11, 10.04), 0.1)]
-    regular, changes = draft_plan(plan_of([*FRAME, *pieces]), SETTINGS)
+    regular, drafted = draft_plan(plan_of([*FRAME, *pieces]), SETTINGS)
     assert centrelines_m(regular.walls)[2:, 0, 1] == pytest.approx([10.0, 10.04])
-    assert changes.n_through == 0
+    assert drafted.n_through == 0
 
 
 def test_thickness_is_nominal_where_it_is_near():
     walls = [*FRAME, (TRIED, 0.112), ((8, 15, 12, 15), 0.15)]
-    regular, changes = draft_plan(plan_of(walls), SETTINGS)
+    regular, drafted = draft_plan(plan_of(walls), SETTINGS)
     assert regular.walls["thickness_m"] == pytest.approx([0.2, 0.2, 0.1, 0.15])
     assert regular.walls["thickness_changed_m"][2] == pytest.approx(-0.012)
     # each side by half of it
     assert regular.walls["moved_m"][2] == pytest.approx(0.006)
-    assert (changes.n_nominal, changes.thickness_m) == (3, pytest.approx(0.012))
+    assert (drafted.n_nominal, drafted.thickness_m) == (3, pytest.approx(0.012))
 
 
 def test_of_two_sizes_that_may_be_that_is_taken_which_the_building_has():
@@ -147,15 +147,15 @@ def test_the_main_direction_is_that_of_most_walls():
 
 
 def test_no_wall_no_change():
-    regular, changes = draft_plan(plan_of([]), SETTINGS)
-    assert len(regular.walls["wall"]) == changes.n_walls == 0 and changes.moved_m == 0
+    regular, drafted = draft_plan(plan_of([]), SETTINGS)
+    assert len(regular.walls["wall"]) == drafted.n_walls == 0 and drafted.moved_m == 0
 
 
 def test_what_is_regular_stays_but_for_what_is_assumed():
     drawn = floorplan_making.plan()
-    regular, changes = draft_plan(drawn, SETTINGS)
-    assert (changes.moved_m, changes.turned_deg) == pytest.approx((0, 0), abs=1e-8)
-    assert changes.width_m == pytest.approx(0, abs=1e-8)
+    regular, drafted = draft_plan(drawn, SETTINGS)
+    assert (drafted.moved_m, drafted.turned_deg) == pytest.approx((0, 0), abs=1e-8)
+    assert drafted.width_m == pytest.approx(0, abs=1e-8)
     assert shapely.equals_exact(regular.areas, drawn.areas, 1e-8).all()
     # the east wall was seen from inside: 7.1 m is its face
     assert regular.walls["thickness_from"].tolist() == [MEASURED, ASSUMED, *[MEASURED] * 4]
@@ -193,20 +193,20 @@ def test_an_opening_is_in_its_wall_and_of_a_size_of_the_catalogue():
     openings = floorplan_making.openings(
         [(rows[0], 5, "door", 0.0, 2.0, 0, 1), (rows[1], 4, "door", 0.0, 2.0, 0, -1)]
     )
-    regular, changes = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
+    regular, drafted = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
     # in the middle of its wall, and by 10 mm wider on both sides; 1.05 m is near to nothing
     assert centrelines_m(regular.openings)[0] == pytest.approx(
         np.array([[4.05, 0.99], [4.05, 1.89]])
     )
     assert regular.openings["width_m"] == pytest.approx([0.9, 1.05])
-    assert changes.width_m == pytest.approx(0.02)
+    assert drafted.width_m == pytest.approx(0.02)
 
 
 def test_short_pieces_of_wall_at_no_room_are_left_out_and_counted():
     stub = ((8.0, 1.0, 8.0, 1.4), np.nan, 0, -1, "observed")
     drawn = floorplan_making.plan(walls=floorplan_making.walls([*floorplan_making.WALLS, stub]))
-    regular, changes = draft_plan(drawn, SETTINGS)
-    assert 6 not in regular.walls["wall"] and changes.n_left_out == 1
+    regular, drafted = draft_plan(drawn, SETTINGS)
+    assert 6 not in regular.walls["wall"] and drafted.n_left_out == 1
     slit = ((1.0, -0.1, 1.05, -0.1), 0, "window", 0.9, 2.1, 0, -1)
     openings = floorplan_making.openings([*floorplan_making.OPENINGS, slit])
     without, counted = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
@@ -233,9 +233,9 @@ def jittered(offsets_m, sigma_m=SIGMA_M):
 @settings(max_examples=40, deadline=None)
 def test_nothing_is_moved_farther_than_it_may(offsets_m, tolerance_m, sigma_m):
     drawn = jittered(offsets_m, sigma_m)
-    regular, changes = draft_plan(drawn, replace(SETTINGS, tolerance_m=tolerance_m))
+    regular, drafted = draft_plan(drawn, replace(SETTINGS, tolerance_m=tolerance_m))
     limit_m = min(tolerance_m, max(0.03, 3 * sigma_m)) + 1e-5
-    assert changes.moved_m <= limit_m
+    assert drafted.moved_m <= limit_m
     for wall, thick_m in ((0, 0.2), (5, 0.1)):
         before, after = (centrelines_m(p.walls)[wall] for p in (drawn, regular))
         grown_m = abs(regular.walls["thickness_m"][wall] - thick_m) / 2
@@ -249,8 +249,8 @@ def test_nothing_is_moved_farther_than_it_may(offsets_m, tolerance_m, sigma_m):
 @settings(max_examples=25, deadline=None)
 def test_what_has_been_made_regular_is_regular(offsets_m):
     once, _ = draft_plan(jittered(offsets_m), SETTINGS)
-    again, changes = draft_plan(once, SETTINGS)
-    assert changes.moved_m < 1e-6 and changes.width_m < 1e-6
+    again, drafted = draft_plan(once, SETTINGS)
+    assert drafted.moved_m < 1e-6 and drafted.width_m < 1e-6
     assert shapely.equals_exact(once.areas, again.areas, 1e-6).all()
 
 

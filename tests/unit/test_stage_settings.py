@@ -25,13 +25,15 @@ from scanplan.visit import next_visit
 from simulate_survey import simulate_survey
 
 SECTIONS = ("input", "poses", "registration", "evaluation", "thesis")
-# what the workflow itself looks up: which surveys, recordings, orderings and walls
+# what the workflow itself looks up: which surveys, recordings, designs, orderings and walls
 OF_THE_WORKFLOW = {
     "dataset",
     "replace",
     "plan.method",
     "plan.extractor",
     "plan.export.formats",
+    "plan.design.file",
+    "plan.design.tolerances",
     "simulate.building",
     "simulate.recording",
     "advanced.jobs.chunk_gb",
@@ -49,6 +51,7 @@ def received(settings):
         "drawing": select.select_drawing(settings),
         "presentation": select.select_presentation(settings),
         "files": select.select_files(settings),
+        "design": select.select_design(settings),
         "cloud": select.select_section(settings, "plan", "export", "cloud"),
         "topics": select.select_topics(settings),
         "crispness": select.select_crispness(settings),

@@ -32,7 +32,10 @@ ASKED = [*map(Requirement, PROJECT["dependencies"])]
 BESIDE = {
     extra: [*map(Requirement, words)] for extra, words in PROJECT["optional-dependencies"].items()
 }
-OF_EXTRAS = ("simulate_survey", "assemble_building")
+OF_EXTRAS = {
+    "simulate_survey": "simulate",
+    **dict.fromkeys(("assemble_building", "annotate_design", "annotate_changes"), "ifc"),
+}
 """Stages that are nothing without the library of an extra."""
 
 
@@ -170,7 +173,7 @@ def test_stages_of_a_plan_begin_without_any_extra():
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize(("stage", "extra"), zip(OF_EXTRAS, ("simulate", "ifc"), strict=True))
+@pytest.mark.parametrize(("stage", "extra"), OF_EXTRAS.items())
 def test_a_stage_that_wants_an_extra_says_in_a_line_which(tmp_path, stage, extra):
     code = f"""
 from scanplan.stage import log

@@ -3,6 +3,8 @@
 import json
 import math
 
+import ifcopenshell
+import ifcopenshell.util.element
 import numpy as np
 import pytest
 
@@ -68,13 +70,24 @@ def test_the_frames_are_tied(compared):
 
 def test_all_files_are_there_and_the_page_stands_alone(compared):
     folder = compared.folder / "results/after/changes/before"
-    assert {file.name for file in folder.iterdir()} == {f"changes.{s}" for s in dataset.CHANGES}
+    wanted = {f"changes.{suffix}" for suffix in (*dataset.CHANGES, "ifc")}
+    assert {file.name for file in folder.iterdir()} == wanted
     page = (folder / "changes.html").read_text()
     assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
     assert 'type="range"' in page and page.count("<svg") == 3
     features = json.loads((folder / "changes.geojson").read_text())["features"]
     moved = [f for f in features if f["properties"]["verdict"] == "moved"]
     assert moved and all(f["id"] == f"change-{f['properties']['change']}" for f in features)
+
+
+def test_the_later_model_says_which_wall_moved(compared):
+    path = compared.folder / "results/after/changes/before/changes.ifc"
+    model = ifcopenshell.open(path)
+    sets = [ifcopenshell.util.element.get_psets(wall) for wall in model.by_type("IfcWall")]
+    stated = [of.get("Scanplan_Changes") for of in sets]
+    moved = [of for of in stated if of and of["Verdict"] == "moved"]
+    assert len(moved) == 1 and moved[0]["Differs"]
+    assert abs(moved[0]["Shift"]) == pytest.approx(NEW_M - OLD_M, abs=0.02)
 
 
 def test_one_survey_alone_is_refused_in_a_line(compared):

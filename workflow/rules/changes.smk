@@ -30,6 +30,30 @@ rule compare_surveys:
         "../../scripts/compare_surveys.py"
 
 
+rule annotate_changes:
+    """Write a copy of the later survey's building model that says what changed."""
+    input:
+        table="results/{dataset}/changes/{earlier}/changes.parquet",
+        ids="results/{dataset}/plan/ids.parquet",
+        model="results/{dataset}/plan/plan.ifc",
+    output:
+        annotated="results/{dataset}/changes/{earlier}/changes.ifc",
+    log:
+        "logs/{dataset}/annotate_changes_{earlier}.log",
+    benchmark:
+        "benchmarks/{dataset}/annotate_changes_{earlier}.tsv"
+    wildcard_constraints:
+        earlier=match_names(DATASETS),
+    threads: 1
+    resources:
+        mem_mb=grown(mem_mb=2000),
+        runtime=grown(runtime=10),
+    params:
+        code=code_of("annotate_changes"),
+    script:
+        "../../scripts/annotate_changes.py"
+
+
 rule changes:
     """Tell what changed from each given dataset to the next, surveys of one floor in their order."""
     input:

@@ -38,6 +38,7 @@ from scanplan.project import (
     catalogue_file,
     export_formats,
     stage_settings,
+    tolerance_file,
 )
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
@@ -45,6 +46,7 @@ from scanplan.project.dataset import (
     describe_dataset,
     find_truth,
     list_comparison,
+    list_deviations,
     list_results,
     name_datasets,
     pair_surveys,
@@ -452,6 +454,12 @@ def nominal_sizes(wildcards):
     """What the catalogue of the job's dataset holds: a size that changes reruns the drawing."""
     settings = DATASETS[wildcards.dataset].settings
     return catalogue_file.read_catalogue(settings["plan"]["export"]["catalogue"])
+
+
+def limits_of_design(wildcards):
+    """What the table of tolerances of the job's dataset holds: a limit that changes reruns what it judges."""
+    settings = DATASETS[wildcards.dataset].settings
+    return tolerance_file.read_tolerances(settings["plan"]["design"]["tolerances"])
 
 
 def source_of_results(wildcards):

@@ -112,5 +112,21 @@ def changes_of_datasets(wildcards):
     return [
         f"results/{later}/changes/{earlier}/changes.{suffix}"
         for earlier, later in pairs
-        for suffix in CHANGES
+        for suffix in (*CHANGES, *with_model(later))
     ]
+
+
+def with_model(dataset):
+    """The suffix of what a dataset's building model says, where it has one."""
+    formats = DATASETS[dataset].settings["plan"]["export"]["formats"]
+    return ("ifc",) if "ifc" in formats else ()
+
+
+def design_of(wildcards):
+    """The design that the job's dataset is held against."""
+    return DATASETS[wildcards.dataset].design
+
+
+def deviations_of_datasets(wildcards):
+    """How every given dataset differs from its design."""
+    return [file for of in GIVEN.values() for file in or_end(list_deviations, of)]

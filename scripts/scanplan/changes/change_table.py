@@ -14,16 +14,12 @@ from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, Change
 from scanplan.plan.floorplan import say_count
 from scanplan.types import Array
 
-_TABLES = ("wall", "opening", "room", "furniture")
+_TABLES = ("wall", "opening", "room", "column", "furniture")
 _DIGITS = 6  # of what notes state: a thousandth of a millimetre
 
 
 def tabulate_changes(changes: Sequence[Change]) -> dict[str, Array]:
     """Return the columns of `schemas.CHANGES`."""
-    shapes = np.array([c.shape for c in changes], object)
-    moved_m = np.array([c.moved_m for c in changes], float).reshape(-1, 2)
-    is_line = shapely.get_dimensions(shapes) == 1 if len(shapes) else np.empty(0, bool)
-    length_m, area_m2 = (measure(shapes) for measure in (shapely.length, shapely.area))
     return {
         "change": np.arange(len(changes), dtype=np.int32),
         "element": np.array([c.table for c in changes], object),
@@ -34,13 +30,24 @@ def tabulate_changes(changes: Sequence[Change]) -> dict[str, Array]:
         "likely": np.array([c.is_change for c in changes], bool),
         "kind_a": np.array([c.kind_a for c in changes], object),
         "kind_b": np.array([c.kind_b for c in changes], object),
-        "shift_m": np.array([c.shift_m for c in changes], float),
-        "sigma_m": np.array([c.sigma_m for c in changes], float),
+        **tabulate_shapes(changes),
+        "doubt": np.array([c.doubt for c in changes], object),
+    }
+
+
+def tabulate_shapes(changes: Sequence[Change]) -> dict[str, Array]:
+    """Return the columns of what was measured of elements, and where they are."""
+    shapes = np.array([of.shape for of in changes], object)
+    moved_m = np.array([of.moved_m for of in changes], float).reshape(-1, 2)
+    is_line = shapely.get_dimensions(shapes) == 1 if len(shapes) else np.empty(0, bool)
+    length_m, area_m2 = (measure(shapes) for measure in (shapely.length, shapely.area))
+    return {
+        "shift_m": np.array([of.shift_m for of in changes], float),
+        "sigma_m": np.array([of.sigma_m for of in changes], float),
         "x_moved_m": moved_m[:, 0].copy(),
         "y_moved_m": moved_m[:, 1].copy(),
         "length_m": np.where(is_line, length_m, np.nan),
         "area_m2": np.where(is_line, np.nan, area_m2),
-        "doubt": np.array([c.doubt for c in changes], object),
         "geometry": shapely.to_wkb(shapes, byte_order=1).astype(object),
     }
 

@@ -1,17 +1,19 @@
 """Two surveys of a floor compared, from their tables to a list of what became of each element."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scanplan.changes import face_shifts, frames, opening_changes, room_changes, wall_changes
+from scanplan.changes.curve_shifts import find_moved_curves, join_curves
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
 from scanplan.changes.seen_faces import list_seen_faces
-from scanplan.changes.surveys import Survey, find_free_floor, read_rays
+from scanplan.changes.surveys import RaySight, Survey, find_free_floor, read_rays
 from scanplan.changes.verdicts import SIGMAS, Change
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store.registered_scans import RegisteredScans
+from scanplan.store.schemas import COLUMN, PIECE
 from scanplan.store.tables import ScanStore
 
 Scans = tuple[ScanStore, RegisteredScans]
@@ -28,7 +30,7 @@ class Comparison:
         In the frame of a.
     tie : FrameTie
     changes : sequence of Change
-        Of walls, openings, rooms and furniture, in this order.
+        Of walls, openings, rooms, columns and furniture, in this order.
     """
 
     a: Survey
@@ -46,20 +48,38 @@ def compare_surveys(plans: tuple[FloorPlan, FloorPlan], scans: tuple[Scans, Scan
         If their frames cannot be tied, see `frames.tie_frames`.
     """
     first, second = plans
-    tie = frames.tie_frames(
-        (list_seen_faces(first), list_seen_faces(second)),
-        (find_free_floor(first), find_free_floor(second)),
-        (first.name, second.name),
-    )
-    motions = (PlaneMotion(), tie.fit.motion)
+    tie = tie_plans(first, second)
+    a = place_survey(first, scans[0], PlaneMotion(), tie)
+    b = place_survey(second, scans[1], tie.fit.motion, tie)
+    compared = compare_placed(a, b, tie)
+    furniture = room_changes.compare_pieces(a, b, PIECE)
+    return replace(compared, changes=[*compared.changes, *furniture])
+
+
+def tie_plans(a: FloorPlan, b: FloorPlan) -> FrameTie:
+    """Tie the frames of two plans of a floor.
+
+    Raises
+    ------
+    StageError
+        See `frames.tie_frames`.
+    """
+    faces = (list_seen_faces(a), list_seen_faces(b))
+    return frames.tie_frames(faces, (find_free_floor(a), find_free_floor(b)), (a.name, b.name))
+
+
+def place_survey(plan: FloorPlan, scans: Scans, motion: PlaneMotion, tie: FrameTie) -> Survey:
+    """Return a survey in the common frame, to which a motion leads from its own."""
     slack_m = max(AT_M, SIGMAS * tie.fit.scatter_m)
-    a, b = (
-        Survey(plan, read_rays(*of, plan, motion), motion, slack_m)
-        for plan, of, motion in zip(plans, scans, motions, strict=True)
-    )
+    return Survey(plan, RaySight(read_rays(*scans, plan, motion), slack_m), motion)
+
+
+def compare_placed(a: Survey, b: Survey, tie: FrameTie) -> Comparison:
+    """Return what became of walls, openings, rooms and columns, of surveys in one frame."""
     shifts = face_shifts.measure_shifts(a, b, tie.fit)
-    changes = wall_changes.compare_walls(a, b, shifts)
+    curves = find_moved_curves(a, b, tie.fit)
+    changes = join_curves(wall_changes.compare_walls(a, b, shifts), curves)
     changes += opening_changes.compare_openings(a, b)
     changes += room_changes.compare_rooms(a, b, changes)
-    changes += room_changes.compare_furniture(a, b)
+    changes += room_changes.compare_pieces(a, b, COLUMN)
     return Comparison(a, b, tie, changes)

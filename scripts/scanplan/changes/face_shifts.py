@@ -76,7 +76,8 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
         span_m = (float(pairs.low_m[row]), float(pairs.high_m[row]))
         line = _face_line(a.faces, pairs.a[row])
         reach_m = REACH_M + ray_cells.CELL_M
-        by_returns_m[row] = ray_cells.measure_shift((a.rays, b.rays), line, span_m, reach_m)
+        places = [s.sight.place_returns(line, span_m, reach_m) for s in (a, b)]
+        by_returns_m[row] = ray_cells.measure_shift(*places)
     off_m = np.abs(by_returns_m - pairs.shift_m)
     agrees = off_m <= np.maximum(SIGMAS * sigma_m, _LIKE_M)
     kept = ~is_shifted | agrees | np.isnan(by_returns_m)

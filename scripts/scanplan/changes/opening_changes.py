@@ -129,10 +129,20 @@ def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
     is_wider = (shift_m < 0) == (old_m == 0.0)
     span_m = (min(old_m, new_m), max(old_m, new_m))
     first, second = (a, b) if is_wider else (b, a)
-    looks = [s.look_at(one.line, span_m, one.half_m) for s in (first, second)]
+    looks = [s.sight.look_at(one.line, span_m, one.half_m) for s in (first, second)]
     later = ray_cells.compare_looks(*looks)
     p = verdicts.rate_places(*later.count_places(later.is_passed))
     if np.mean(later.is_passed) < _PASSED or p < 1 / 2:
+        return same
+    # what closes it may be a leaf, or a pane that some rays end at
+    closed = _Opening(
+        -1,
+        "",
+        Line(one.line.at(np.array(span_m[0])), one.line.normal),
+        span_m[1] - span_m[0],
+        one.half_m,
+    )
+    if not is_wider and not _is_wall(closed, a, b):
         return same
     x_m, y_m = (shift_m * one.line.direction).tolist()
     # of what is not known to be one opening it is no more than possible
@@ -148,7 +158,7 @@ def _compare_kinds(kind: str, other: str) -> str:
 def _judge_alone(opening: _Opening, of: Survey, by: Survey) -> Change:
     """Return what another survey shows of an opening that it has not drawn."""
     inner_m = (END_M, max(opening.width_m - END_M, END_M + ray_cells.CELL_M))
-    own, other = (s.look_at(opening.line, inner_m, opening.half_m) for s in (of, by))
+    own, other = (s.sight.look_at(opening.line, inner_m, opening.half_m) for s in (of, by))
     shape = shapely.LineString(opening.ends_m)
 
     def tell(verdict: str, p: float, doubt: str = "") -> Change:
@@ -171,7 +181,7 @@ def _judge_alone(opening: _Opening, of: Survey, by: Survey) -> Change:
     is_closed = (hits >= FEW) & (passes <= STRAY_SHARE * (hits + passes))
     if np.mean(is_closed) < _CLOSED:
         return tell(NOT_SEEN, math.nan)
-    flush = _find_flush_sides(opening, by)
+    flush = _find_flush_sides(opening, of, by)
     if not flush.all() or not len(flush):
         return tell(SAME, 1 - _ONE_SIDE, "shut, or closed by something set back from the wall")
     p = verdicts.rate_places(n_ending, n_passing) * (1.0 if len(flush) > 1 else _ONE_SIDE)
@@ -179,21 +189,31 @@ def _judge_alone(opening: _Opening, of: Survey, by: Survey) -> Change:
     return tell(GONE, p, doubt)
 
 
-def _find_flush_sides(opening: _Opening, by: Survey) -> BoolArray:
-    """Return of each side that was seen whether what closes an opening is flush with the wall."""
+def _is_wall(closed: _Opening, of: Survey, by: Survey) -> bool:
+    flush = _find_flush_sides(closed, of, by)
+    return len(flush) > 0 and bool(flush.all())
+
+
+def _find_flush_sides(opening: _Opening, of: Survey, by: Survey) -> BoolArray:
+    """Return of each side that was seen whether what closes an opening is flush with the wall.
+
+    Beside the opening that counts which is wall to the survey that has the opening: no pane.
+    """
     flush: list[bool] = []
     for sign in (1.0, -1.0):
         line = Line(opening.line.centre, sign * opening.line.normal)
         ends_m = np.sort(line.along_m(opening.ends_m))
         span_m = (float(ends_m[0]) - _FLANK_M, float(ends_m[1]) + _FLANK_M)
         reach_m = opening.half_m + _FLANK_M / 2
-        off_m = ray_cells.place_returns(by.rays, line, span_m, reach_m)
+        off_m = by.sight.place_returns(line, span_m, reach_m)
         middle_m = span_m[0] + (np.arange(len(off_m)) + 0.5) * ray_cells.CELL_M
         is_inner = (middle_m > ends_m[0] + END_M) & (middle_m < ends_m[1] - END_M)
         is_flank = (middle_m < ends_m[0] - END_M) | (middle_m > ends_m[1] + END_M)
+        is_flank &= of.sight.look_at(line, span_m, opening.half_m).solid.any(axis=1)
         inner_m, flank_m = (
             off_m[cells][np.isfinite(off_m[cells])] for cells in (is_inner, is_flank)
         )
-        if len(inner_m) >= FEW and len(flank_m) >= FEW:
+        # each cell is the median of some returns: one tells where a leaf is, beside furniture
+        if len(inner_m) and len(flank_m) >= FEW:
             flush.append(bool(abs(np.median(inner_m) - np.median(flank_m)) <= _FLUSH_M))
     return np.array(flush, bool)

@@ -16,14 +16,18 @@ from scanplan.rays.tolerances import BEHIND_M, FEW, STRAY_SHARE
 from scanplan.types import BoolArray, FloatArray, IntArray
 from scanplan.validation.clustered_shares import number_places
 
-CELL_M = 0.1  # along: a few rays of each scan
+CELL_M = 0.1
+"""Along: a few rays of each scan."""
 AT_M = 0.1
 """Before and behind a wall's sides: what poses, ranges and two straight maps err by."""
-_ROW_M = 0.25  # up: between two beams of 2 degrees at 7 m
-_ROWS = 12  # up to 3 m
+ROW_M = 0.25
+"""Up: between two beams of 2 degrees at 7 m."""
+N_ROWS = 12
+"""Up to 3 m."""
+HIGHEST_M = 2.0
+"""Above the floor: lintels, and what planar scanners are mounted below."""
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
-_HIGHEST_M = 2.0  # above the floor: lintels, and what planar scanners are mounted below
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
 
@@ -91,13 +95,13 @@ def look_at(
     cell = np.floor((face.along_m - low_m) / CELL_M).astype(np.int64)
     row = _number_rows(face.height_m, planar=rays.planar)
     is_near = (cell >= 0) & (cell < n_cells) & (steep <= _STEEPEST)
-    is_near &= (face.height_m <= _HIGHEST_M) | rays.planar
+    is_near &= (face.height_m <= HIGHEST_M) | rays.planar
     places = number_places(rays.sensors_m[:, :2], _PLACE_M)[face.scan]
     told = np.column_stack([cell, row, places])
     ending = told[is_near & (np.abs(face.behind_m) <= at_m)]
     passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
     shape = (n_cells, _count_rows(rays))
-    is_mixed = rays.planar and _spread_m(rays) > _ROW_M
+    is_mixed = rays.planar and _spread_m(rays) > ROW_M
     return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed)
 
 
@@ -110,30 +114,21 @@ def _spread_m(rays: RaySet) -> float:
 
 
 def _number_rows(height_m: FloatArray, *, planar: bool) -> IntArray:
-    row = np.floor(height_m / _ROW_M).astype(np.int64)
-    return np.zeros_like(row) if planar else np.clip(row, 0, _ROWS - 1)
+    row = np.floor(height_m / ROW_M).astype(np.int64)
+    return np.zeros_like(row) if planar else np.clip(row, 0, N_ROWS - 1)
 
 
 def _count_rows(rays: RaySet) -> int:
-    return 1 if rays.planar else _ROWS
+    return 1 if rays.planar else N_ROWS
 
 
-def measure_shift(
-    rays: tuple[RaySet, RaySet],
-    line: Line,
-    span_m: tuple[float, float],
-    reach_m: float,
-) -> float:
+def measure_shift(first_m: FloatArray, second_m: FloatArray) -> float:
     """Return how far returns of a second survey lie before those of a first, seen from one side.
 
     Parameters
     ----------
-    line : lines.Line
-        A face's: its normal points to the side that it is seen from.
-    span_m : (float, float)
-        From where to where along it.
-    reach_m : float
-        Returns farther before or behind are of something else.
+    first_m, second_m : (c, r) float
+        How far they lie before a face, as `place_returns` says.
 
     Returns
     -------
@@ -142,9 +137,8 @@ def measure_shift(
         which heights mean nothing returns may be at any height: where the other has the wall at
         several places, that counts which is nearest.
     """
-    first, second = (place_returns(of, line, span_m, reach_m) for of in rays)
-    shift_m = second - first
-    if min(first.shape[1], second.shape[1]) == 1:
+    shift_m = second_m - first_m
+    if min(first_m.shape[1], second_m.shape[1]) == 1:
         nearest = np.argmin(np.nan_to_num(np.abs(shift_m), nan=np.inf), axis=1)
         shift_m = np.take_along_axis(shift_m, nearest[:, None], axis=1)
     known_m = shift_m[np.isfinite(shift_m)]
@@ -155,6 +149,15 @@ def place_returns(
     rays: RaySet, line: Line, span_m: tuple[float, float], reach_m: float
 ) -> FloatArray:
     """Return how far returns lie before a face, in the median of each cell; NaN of few.
+
+    Parameters
+    ----------
+    line : lines.Line
+        A face's: its normal points to the side that it is seen from.
+    span_m : (float, float)
+        From where to where along it.
+    reach_m : float
+        Returns farther before or behind are of something else.
 
     Returns
     -------

@@ -23,7 +23,7 @@ from scanplan.changes.verdicts import (
     Change,
 )
 from scanplan.geometry import overlays
-from scanplan.store.schemas import PIECE
+from scanplan.store.schemas import COLUMN, PIECE
 from scanplan.types import Array, FloatArray, IntArray
 
 _SEEN = 0.5  # of a room's floor: less shows nothing of it
@@ -37,7 +37,9 @@ _PASSED = 0.5  # of the cells of its sides that rays go through where it stood
 _HIT = 0.3  # of those that rays end at
 _AS_LARGE = 0.6  # the smaller area of the larger: one piece, seen from other sides
 _CARRIED_M = 3.0  # farther away it may as well be another
-_MOVES = 0.3  # of furniture: chairs and desks are moved, cupboards are not
+_TABLES = {PIECE: "furniture", COLUMN: "column"}
+# chairs and desks are moved, cupboards are not; columns are as rarely as walls
+_USUAL = {"furniture": 0.3, "column": CHANGED}
 
 
 def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Change]:
@@ -103,7 +105,9 @@ def _judge_alone(
     share = overlays.intersect_areas(area, seen).area / area.area
     if share < _SEEN:
         return Change("room", number, -1, NOT_SEEN, math.nan, area)
-    near = [wall.p for wall in walls if shapely.dwithin(area, _places(wall), _TOUCH_M)]
+    # a wall that moved parts the same rooms
+    parting = [wall for wall in walls if wall.verdict != MOVED]
+    near = [wall.p for wall in parting if shapely.dwithin(area, wall.shape, _TOUCH_M)]
     p = max([CHANGED, *near])
     if p >= verdicts.LIKELY:
         return Change("room", number, -1, GONE, p, area)
@@ -111,55 +115,78 @@ def _judge_alone(
     return Change("room", number, -1, SAME, 1 - p, area, doubt=doubt)
 
 
-def compare_furniture(a: Survey, b: Survey) -> list[Change]:
-    """Return what became of pieces of furniture, those that were carried off and found again moved.
+def compare_pieces(a: Survey, b: Survey, kind: str) -> list[Change]:
+    """Return what became of what stands in rooms: furniture that was carried off may be found.
 
     Parameters
     ----------
     a, b : Survey
         In one frame.
+    kind : str
+        `schemas.PIECE` or `schemas.COLUMN`.
     """
-    shapes_a, numbers_a = _list_pieces(a)
-    shapes_b, numbers_b = _list_pieces(b)
+    table = _TABLES[kind]
+    shapes_a, numbers_a = _list_pieces(a, kind)
+    shapes_b, numbers_b = _list_pieces(b, kind)
     matched = pair_most(_share_areas(shapes_a, shapes_b), _IN_PLACE)
     found = [
-        Change("furniture", int(numbers_a[i]), int(numbers_b[j]), SAME, 1 - CHANGED, shapes_a[i])
+        _judge_stood(table, int(numbers_a[i]), int(numbers_b[j]), shapes_a[i], shapes_b[j])
         for i, j in matched.pairs
     ]
-    gone = [_judge_piece(int(numbers_a[i]), shapes_a[i], a, b) for i in matched.lone_a]
-    new = [_judge_piece(int(numbers_b[j]), shapes_b[j], b, a).turned() for j in matched.lone_b]
+    gone = [_judge_piece(table, int(numbers_a[i]), shapes_a[i], a, b) for i in matched.lone_a]
+    new = [
+        _judge_piece(table, int(numbers_b[j]), shapes_b[j], b, a).turned() for j in matched.lone_b
+    ]
     walls = overlays.unite_areas([a.place(body) for body in a.plan.bodies])
     return [*found, *_join_moved(gone, new, walls)]
 
 
-def _list_pieces(survey: Survey) -> tuple[Array, IntArray]:
+def _list_pieces(survey: Survey, kind: str) -> tuple[Array, IntArray]:
     pieces = survey.plan.furniture
-    rows = np.flatnonzero(pieces["kind"] == PIECE)
+    rows = np.flatnonzero(pieces["kind"] == kind)
     shapes = shapely.from_wkb(np.asarray(pieces["geometry"], object)[rows])
     placed = np.empty(len(rows), object)
     placed[:] = [survey.place(shape) for shape in shapes]
     return placed, np.asarray(pieces["furniture"])[rows].astype(np.int64)
 
 
-def _judge_piece(number: int, shape: BaseGeometry, of: Survey, by: Survey) -> Change:
+def _judge_stood(
+    table: str, number_a: int, number_b: int, shape: BaseGeometry, other: BaseGeometry
+) -> Change:
+    """Return that a piece is where it was, and what the middles of its outlines differ by."""
+    way_m = shapely.get_coordinates([other.centroid, shape.centroid])
+    shift_m = float(np.hypot(*(way_m[0] - way_m[1])))
+    return Change(
+        table,
+        number_a,
+        number_b,
+        SAME,
+        1 - CHANGED,
+        shape,
+        shift_m=shift_m,
+        sigma_m=_SIDE_M,
+    )
+
+
+def _judge_piece(table: str, number: int, shape: BaseGeometry, of: Survey, by: Survey) -> Change:
     """Return what another survey shows of a piece, along the sides of its outline."""
     n_solid, n_passed, n_hit = 0, 0, 0
     most = (0, 0)
     for ends_m in _list_sides(shape):
         line, length_m = ray_cells.line_between(ends_m)
-        own, other = (s.look_at(line, (0.0, length_m), _SIDE_M / 2) for s in (of, by))
+        own, other = (s.sight.look_at(line, (0.0, length_m), _SIDE_M / 2) for s in (of, by))
         later = ray_cells.compare_looks(own, other)
         is_solid = own.solid.sum(axis=1) > 0
         n_solid += int(is_solid.sum())
         n_passed += int((later.is_passed & is_solid).sum())
         n_hit += int((later.is_hit & is_solid).sum())
         most = max(most, later.count_places(is_solid))
-    p = verdicts.rate_places(*most, _MOVES)
+    p = verdicts.rate_places(*most, _USUAL[table])
     if n_solid and n_passed >= _PASSED * n_solid and p > 1 / 2:
-        return Change("furniture", number, -1, GONE, p, shape)
+        return Change(table, number, -1, GONE, p, shape)
     if n_solid and n_hit >= _HIT * n_solid:
-        return Change("furniture", number, -1, SAME, 1 - p, shape)
-    return Change("furniture", number, -1, NOT_SEEN, math.nan, shape)
+        return Change(table, number, -1, SAME, 1 - p, shape)
+    return Change(table, number, -1, NOT_SEEN, math.nan, shape)
 
 
 def _list_sides(shape: BaseGeometry) -> Iterator[FloatArray]:

@@ -3,13 +3,14 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import AT_M, Looks, look_at
+from scanplan.changes.ray_cells import AT_M, Looks, look_at, place_returns
 from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import Line
@@ -25,26 +26,59 @@ _MOST_RAYS = 3_000_000  # of all of them: 100 MB, and a second to sort
 _OPEN_M = 0.1  # below the ceiling nothing is asked: of a lintel or a beam
 
 
+class Sight(Protocol):
+    """What is known of the places of a floor beside its plan, in the common frame."""
+
+    def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
+        """Return what it shows of a stretch of wall, see `ray_cells.look_at`."""
+        ...
+
+    def place_returns(self, line: Line, span_m: tuple[float, float], reach_m: float) -> FloatArray:
+        """Return how far surfaces lie before a face, see `ray_cells.place_returns`."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class RaySight:
+    """What rays show.
+
+    Attributes
+    ----------
+    rays : ray_set.RaySet
+        In the common frame, heights above the floor.
+    slack_m : float
+        What they are off by at walls, see `ray_cells.look_at`.
+    """
+
+    rays: RaySet
+    slack_m: float = AT_M
+
+    def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
+        """Return what rays show of a stretch of wall, see `ray_cells.look_at`."""
+        return look_at(self.rays, line, span_m, half_m, self.slack_m)
+
+    def place_returns(self, line: Line, span_m: tuple[float, float], reach_m: float) -> FloatArray:
+        """Return how far returns lie before a face, see `ray_cells.place_returns`."""
+        return place_returns(self.rays, line, span_m, reach_m)
+
+
 @dataclass(frozen=True, eq=False)
 class Survey:
-    """A survey.
+    """A survey, or what was drawn.
 
     Attributes
     ----------
     plan : floorplan.FloorPlan
         In its own frame.
-    rays : ray_set.RaySet
-        In the frame that `motion` leads to, heights above the floor.
+    sight : Sight
+        In the frame that `motion` leads to.
     motion : PlaneMotion
         From its own frame to the common one.
-    slack_m : float
-        What rays are off by at walls, see `ray_cells.look_at`.
     """
 
     plan: FloorPlan
-    rays: RaySet
+    sight: Sight
     motion: PlaneMotion
-    slack_m: float = AT_M
 
     @cached_property
     def faces(self) -> SeenFaces:
@@ -55,10 +89,6 @@ class Survey:
     def free(self) -> BaseGeometry:
         """The floor that rays went over, in the common frame."""
         return self.place(find_free_floor(self.plan))
-
-    def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
-        """Return what its rays show of a stretch of wall, see `ray_cells.look_at`."""
-        return look_at(self.rays, line, span_m, half_m, self.slack_m)
 
     def place(self, shape: BaseGeometry) -> BaseGeometry:
         """Return a shape of the plan in the common frame."""

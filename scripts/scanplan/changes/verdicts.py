@@ -17,7 +17,8 @@ LIKELY = 0.9
 CHANGED = 0.05
 """Of the elements of a floor, before either survey is asked: few are rebuilt."""
 _PLACE_TELLS = 9.0  # a place tells what is right nine times as often as what is wrong
-_MOST_PLACES = 6  # more err alike, by one map
+MOST_PLACES = 6
+"""More err alike, by one map."""
 REACH_M = 0.6
 """A wall that has moved has done so by less, either way, all as likely."""
 _WRONG = 0.02  # of faces that have not moved: drawn of something else in one survey
@@ -94,7 +95,7 @@ def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:
     >>> round(rate_places(3, 0), 2), round(rate_places(1, 0), 2), round(rate_places(3, 3), 2)
     (0.97, 0.32, 0.05)
     """
-    net = max(-_MOST_PLACES, min(_MOST_PLACES, n_for - n_against))
+    net = max(-MOST_PLACES, min(MOST_PLACES, n_for - n_against))
     odds = usual / (1 - usual) * _PLACE_TELLS**net
     return odds / (1 + odds)
 

@@ -109,7 +109,7 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     own_m, others_m = (s.motion.move(centrelines_m(s.plan.openings)) for s in (of, by))
     for wall in _list_walls(of):
         found = _find_shifts(wall, shifts)
-        earlier, later = (s.look_at(wall.line, wall.span_m, wall.half_m) for s in (of, by))
+        earlier, later = (s.sight.look_at(wall.line, wall.span_m, wall.half_m) for s in (of, by))
         compared = ray_cells.compare_looks(earlier, later)
         state = np.select(
             [

@@ -18,10 +18,12 @@ from scanplan.project import (
     corrections_file,
     dataset_files,
     dataset_list,
+    design_file,
     export_formats,
     overlooked_files,
     provenance,
     texts,
+    tolerance_file,
     user_file,
 )
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
@@ -59,6 +61,10 @@ COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH)
 """Results of a dataset that the comparison alone has stages for."""
 CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
 """Suffixes of what is made of two surveys of a floor."""
+DESIGN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "txt")
+"""Suffixes of what is made of a survey and its design."""
+OF_MODEL = ("as_built.ifc", "deviations.bcf")
+"""What is made of them, too, where the design is a building model."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +91,8 @@ class Dataset:
         What the user should know of it before it is run.
     corrections : str or None
         The file of what a person says of its plan, where there is one.
+    design : str or None
+        The file of the design that it is held against, where there is one.
     """
 
     name: str
@@ -96,6 +104,7 @@ class Dataset:
     source: str = ""
     notes: tuple[str, ...] = ()
     corrections: str | None = None
+    design: str | None = None
 
 
 def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | None]:
@@ -199,7 +208,10 @@ def describe_dataset(
         corrections = _read_corrections(Path(path))
         truth = _truth_beside(Path(path))
         found = Dataset(name, settings, recordings, truth, notes=notes, corrections=corrections)
-    return replace(found, layers=layers, source=source)
+    named = settings["plan"]["design"]
+    tolerance_file.read_tolerances(named["tolerances"])
+    design = design_file.find_design(named["file"], path)
+    return replace(found, layers=layers, source=source, design=design)
 
 
 def _read_own_settings(path: FilePath | None) -> list[Layer]:
@@ -318,6 +330,22 @@ def pair_surveys(names: Sequence[str]) -> list[tuple[str, str]]:
             f" give the earlier one first: {example}"
         )
     return list(pairwise(names))
+
+
+def list_deviations(found: Dataset) -> list[str]:
+    """List what is made of a dataset and its design.
+
+    Raises
+    ------
+    StageError
+        If it has none.
+    """
+    if found.design is None:
+        remedy = "put an .ifc or .dxf file into its folder, or name one by plan.design.file"
+        raise StageError(f"design: {found.name} has none to be held against; {remedy}")
+    files = [f"deviations.{suffix}" for suffix in DESIGN]
+    files += OF_MODEL if found.design.lower().endswith(".ifc") else ()
+    return [f"results/{found.name}/design/{file}" for file in files]
 
 
 def find_truth(found: Dataset) -> tuple[str, str]:

@@ -173,6 +173,11 @@ def select_presentation(settings: Settings) -> Keywords:
     return _without(select_drawing(settings), ("map_cell_m",)) | own
 
 
+def select_design(settings: Settings) -> Keywords:
+    """Return the settings of `compare_design`: those of drawings, and the design's storey."""
+    return select_drawing(settings) | {"design_storey": settings["plan"]["design"]["storey"]}
+
+
 def select_files(settings: Settings) -> Keywords:
     """Return the settings of `export_files`."""
     export = select_section(settings, "plan", "export")

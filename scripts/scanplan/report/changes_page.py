@@ -1,6 +1,5 @@
 """The page of what changed between two surveys: a slider between both plans, a table, the sheet."""
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -9,9 +8,10 @@ import shapely
 from markupsafe import Markup
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGES, LIKELY, Change
+from scanplan.changes.verdicts import CHANGES, LIKELY
 from scanplan.geometry import overlays
 from scanplan.report.templates import render_template
 from scanplan.types import FilePath
@@ -57,7 +57,7 @@ def format_page(
             (name, [(kind, _format_path(shape)) for kind, shape in shapes])
             for name, shapes in plans
         ],
-        rows=[_say(change) for change in told],
+        rows=[(*say_change(change), change.doubt) for change in told],
         likely=LIKELY,
         sheet=Markup(sheet.partition("?>")[2]),
     )
@@ -84,17 +84,3 @@ def _format_path(shape: BaseGeometry) -> str:
     ]
     lines = ("L".join(f"{x:.3f} {-y:.3f}" for x, y in ring[:-1]) for ring in rings)
     return "".join(f"M{line}Z" for line in lines)
-
-
-def _say(change: Change) -> tuple[str, str, str, str, str]:
-    number = f"a{change.number_a}" if change.number_a >= 0 else f"b{change.number_b}"
-    if min(change.number_a, change.number_b) >= 0:
-        number = f"{number}, b{change.number_b}"
-    kind = change.kind_a or change.kind_b
-    element = " ".join(filter(None, [change.table, number, f"({kind})" if kind else ""]))
-    mark = "" if change.is_change else "?"
-    by = ""
-    if math.isfinite(change.shift_m):
-        sigma = f" ± {100 * change.sigma_m:.1f}" if math.isfinite(change.sigma_m) else ""
-        by = f"{100 * abs(change.shift_m):.1f}{sigma} cm"
-    return element, f"{change.verdict}{mark}", f"{change.p:.2f}", by, change.doubt

@@ -543,6 +543,46 @@ Of both surveys the file states the names `a` and `b`; `motion`, from the frame 
 (yaw_rad, x_m, y_m), its `covariance` of x, y and yaw about `centre_m`, `residual_m` of the faces
 that agree and `share` of the smaller survey's; and `others`, motions that fit nearly as well. JSON.
 """
+DEVIATIONS = Schema(
+    "deviations",
+    1,
+    {
+        "deviation": "int32",
+        "element": "string",
+        "guid": "string",
+        "name": "string",
+        **dict.fromkeys(("number_design", "number_built"), "int32"),
+        "verdict": "string",
+        "p": "float64",
+        "fault": "bool",
+        **dict.fromkeys(("kind_design", "kind_built"), "string"),
+        **dict.fromkeys(
+            (
+                *("shift_m", "sigma_m", "limit_m", "x_moved_m", "y_moved_m"),
+                *("length_m", "area_m2", "built_m2"),
+            ),
+            "float64",
+        ),
+        "doubt": "string",
+        "geometry": "binary",
+    },
+    ("deviation",),
+    geometry=True,
+)
+"""How what was built differs from its design; all in the frame of the design, metres.
+
+`element` is wall (a stretch of one), opening, room or column; `guid` and `name` are the design's,
+empty of what it lacks; `number_design` counts its elements of a kind in the order of the file,
+`number_built` is that of the plan's table, -1 where it is in none. `verdict` is within (the
+tolerance `limit_m`), deviates, kind_differs, missing, additional, undecided (measured too coarsely
+to tell) or not_seen, `p` how likely that is (NaN of the last two), `fault` whether it counts as one
+that differs. `shift_m` is how far it was built off, `sigma_m` its standard deviation: of a wall
+across, to the left of its line in the design, of an opening the edge that differs most, along it,
+of a column the way of its middle. `built_m2` is the area of a room as built.
+
+The file states what that of `CHANGES` states, with the design as a, the name of its `storey`, the
+height `floor_m` of that in the design, and the `tolerances`. JSON.
+"""
 _WITHIN = ("005m", "010m", "015m")
 _SHARES = ("false_negative", "correct_match", "false_positive")
 _AGREEMENT = {

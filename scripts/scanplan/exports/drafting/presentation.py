@@ -8,7 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.leaves import draw_swing, find_leaves
-from scanplan.exports.drafting.regular_plan import MEASURED, Changes
+from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
@@ -35,7 +35,7 @@ _PLAIN = {"gap": "passage"}
 def compose_presentation(
     measured: FloorPlan,
     regular: FloorPlan,
-    changes: Changes,
+    drafted: Drafted,
     facts: SheetFacts | None = None,
     *,
     turn_deg: float | None = None,
@@ -49,11 +49,11 @@ def compose_presentation(
     Parameters
     ----------
     measured, regular : FloorPlan
-        A plan, and what `regular_plan.draft_plan` makes of it with its changes.
+        A plan, and what `regular_plan.draft_plan` makes of it, and has changed of it.
     facts, turn_deg
         See `composition.lay_out`.
     """
-    shown = _show_regular(measured, regular, _list_notes(changes))
+    shown = _show_regular(measured, regular, _list_notes(drafted))
     stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
     return lay_out(shown, stated, turn_deg=turn_deg)
 
@@ -176,19 +176,19 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     return overlays.intersect_areas(built, near)
 
 
-def _list_notes(changes: Changes) -> list[str]:
+def _list_notes(drafted: Drafted) -> list[str]:
     """Return what has been changed of the plan, and by what rule areas are, in lines."""
-    walls = say_count(changes.n_walls, "wall")
-    assumed = say_count(changes.n_assumed, "wall")
-    left_out = say_count(changes.n_left_out, "scrap")
+    walls = say_count(drafted.n_walls, "wall")
+    assumed = say_count(drafted.n_assumed, "wall")
+    left_out = say_count(drafted.n_left_out, "scrap")
     sentences = [
-        f"Of {walls} {changes.n_square} are square to the building, {changes.n_through} in line"
-        f" with others, {changes.n_nominal} of nominal thickness.",
-        f"No side of a wall moved by more than {_in_mm(changes.moved_m)}, no wall turned by more"
-        f" than {changes.turned_deg:.1f}° or thickened by more than {_in_mm(changes.thickness_m)}.",
-        f"Openings widened by at most {_in_mm(changes.width_m)}.",
-        f"{assumed} seen from one side: thickness assumed." * (changes.n_assumed > 0),
-        f"{left_out} left out: short walls at no room, slits." * (changes.n_left_out > 0),
+        f"Of {walls} {drafted.n_square} are square to the building, {drafted.n_through} in line"
+        f" with others, {drafted.n_nominal} of nominal thickness.",
+        f"No side of a wall moved by more than {_in_mm(drafted.moved_m)}, no wall turned by more"
+        f" than {drafted.turned_deg:.1f}° or thickened by more than {_in_mm(drafted.thickness_m)}.",
+        f"Openings widened by at most {_in_mm(drafted.width_m)}.",
+        f"{assumed} seen from one side: thickness assumed." * (drafted.n_assumed > 0),
+        f"{left_out} left out: short walls at no room, slits." * (drafted.n_left_out > 0),
         _AREA_RULE,
     ]
     return _wrap(sentences)

@@ -61,8 +61,8 @@ def make_draft_settings(max_change_m: float, catalogue: Mapping[str, Any]) -> Dr
 
 
 @dataclass(frozen=True)
-class Changes:
-    """What has been changed of a plan.
+class Drafted:
+    """What drafting has changed of a plan.
 
     Attributes
     ----------
@@ -86,8 +86,8 @@ class Changes:
     n_left_out: int
 
 
-def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan, Changes]:
-    """Return a plan with regular walls, its faces, rooms and openings with them, and the changes.
+def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan, Drafted]:
+    """Return a plan with regular walls, its faces, rooms and openings with them, and what changed.
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
     openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one
@@ -135,7 +135,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         {wall for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
         for kind in (DIRECTION, THROUGH, THICKNESS)
     ]
-    changes = Changes(
+    drafted = Drafted(
         len(thickness_m),
         *map(len, kinds),
         moved_m=float(adjusted.moved_m.max(initial=0)),
@@ -152,7 +152,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         openings=_leave_doubts(openings),
         rooms=_leave_doubts(_move_rooms(plan, moved)),
     )
-    return regular, changes
+    return regular, drafted
 
 
 def _count_elements(plan: FloorPlan) -> int:

@@ -9,6 +9,7 @@ INK = "#000000"
 FAINT = "#595959"  # grey of what steps back behind the walls: dimensions, and what is inferred
 DOUBT = "#b3001b"  # the one colour of a plan's sheet, for what is to be verified on site
 ADDED, CARRIED = "#00704f", "#0b62a8"  # of what changed: new, and moved; what is gone has DOUBT's
+STRAYED = "#a05a00"  # of what was built beyond its tolerance
 
 
 class Letters:
@@ -117,6 +118,10 @@ LAYERS = {
     "A-CHNG-GONE": Layer(0.35, 1, "DASHED"),
     "A-CHNG-NEWW": Layer(0.35, 3),
     "A-CHNG-MOVD": Layer(0.35, 5),
+    "A-TOLR-WITH": Layer(0.18, 3),
+    "A-TOLR-UNDC": Layer(0.18, 9),
+    "A-TOLR-BYND": Layer(0.35, 30),
+    "A-TOLR-FARB": Layer(0.35, 1),
     "A-ANNO-VRFY": Layer(0.18, 1),
     "A-ANNO-REVS": Layer(0.25, 6, "DASHED"),
     "A-ANNO-DIMS": Layer(0.13, 8),
@@ -159,6 +164,12 @@ STYLES = {
     "gone": Style("A-CHNG-GONE", "gone: rays go through now", DOUBT, dashes_mm=_DASHED),
     "new": Style("A-CHNG-NEWW", "new: rays went through before", ADDED, "#bfe3d3"),
     "moved": Style("A-CHNG-MOVD", "moved: where it stands now", CARRIED, "#c4dbf0"),
+    "within": Style("A-TOLR-WITH", "built within tolerance", ADDED, "#bfe3d3"),
+    "undecided": Style("A-TOLR-UNDC", "measured too coarsely to tell", FAINT, "#e3e3e3"),
+    "beyond": Style("A-TOLR-BYND", "beyond tolerance, or of another kind", STRAYED, "#f6d9a8"),
+    "far-beyond": Style("A-TOLR-FARB", "beyond twice its tolerance", DOUBT, "#f0a9a9"),
+    "missing": Style("A-CHNG-GONE", "designed, not built", DOUBT, "#ffffff", _DASHED),
+    "additional": Style("A-CHNG-NEWW", "built, not designed", CARRIED, "#c4dbf0"),
     "way": Style("A-CHNG-MOVD", ink=CARRIED, fill=CARRIED),
     "leader": Style("A-ANNO-DIMS", ink=FAINT),
     "dimension": Style("A-ANNO-DIMS", "~ about, an end is not known", ink=FAINT),

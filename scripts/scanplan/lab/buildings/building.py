@@ -13,7 +13,7 @@ from scanplan.lab.buildings.tolerances import DECIMALS
 from scanplan.types import FilePath, FloatArray
 
 if TYPE_CHECKING:
-    from scanplan.lab.buildings.ifc_file import IfcBuilding
+    from scanplan.design.ifc_file import IfcBuilding
 
 DOORS = ("open", "closed")
 WINDOWS = ("glass", "empty")
@@ -175,7 +175,7 @@ def _load_model(
     slice_height_m: float,
     **reading: Any,
 ) -> Building:
-    from scanplan.lab.buildings import ifc_file
+    from scanplan.design import ifc_file
 
     model = ifc_file.parse_ifc(data, source)
     index = ifc_file.find_storey(model, chosen, source)

@@ -13,7 +13,7 @@ from scanplan.lab.buildings.tolerances import DECIMALS, ROOM_M, THRESHOLD_M
 from scanplan.types import FilePath, FloatArray
 
 if TYPE_CHECKING:
-    from scanplan.lab.buildings.ifc_file import IfcBuilding, IfcPart
+    from scanplan.design.ifc_file import IfcBuilding, IfcPart
 
 Opening = tuple[LineString, str, float, float]
 """Stretch of the wall's middle line, type, lower and upper edge."""

@@ -19,6 +19,7 @@ from scanplan.project.code_files import state_version
 SNAKEFILE = Path(__file__).absolute().parents[4] / "workflow/Snakefile"
 """The workflow that lies beside this package, in a checkout and in a wheel alike."""
 DEMO = "demo"
+DIFF = "diff"
 OPEN = "open"
 
 _WRONG_CALL = 2  # the exit status of shells' own commands where their arguments are wrong
@@ -63,14 +64,21 @@ def form_arguments(words: Sequence[str]) -> list[str]:
         Once the help or the version is told.
     """
     asked, further = _make_parser().parse_known_args(words)
+    # what changed from each survey to the next
+    is_diff = asked.recording[:1] == [DIFF]
+    targets = ["changes"] if is_diff else []
+    asked.recording = asked.recording[len(targets) :]
     if not asked.recording:
         raise StageError(f"no recording is given; name one, a folder of them, or `{DEMO}`")
+    if is_diff and len(asked.recording) < 2:
+        raise StageError(f"{DIFF}: one survey alone; name the earlier one, then the later one")
     datasets = [] if asked.recording == [DEMO] else asked.recording
     if DEMO in datasets:
         raise StageError(f"{DEMO}: is made alone; ./{DEMO} is a folder of that name")
     settings = {"dataset": datasets, "replace": asked.replace or []}
     config = [f"{k}={json.dumps(v, ensure_ascii=False)}" for k, v in settings.items() if v]
     arguments = [
+        *targets,
         *("--snakefile", str(SNAKEFILE), "--cores", asked.cores, *further),
         *(("--configfile", asked.configfile) if asked.configfile else ()),
         *(("--config", *config) if config else ()),
@@ -106,7 +114,8 @@ def _make_parser() -> _Parser:
     parser = _Parser(
         prog="scanplan",
         description="Makes floor plans of LiDAR recordings, in results/ of the folder it runs in.",
-        epilog="`scanplan open results/NAME` shows a report in the browser. A run says which"
+        epilog="`scanplan diff BEFORE AFTER` tells what changed between two surveys of a floor;"
+        " `scanplan open results/NAME` shows a report in the browser. A run says which"
         " command of Snakemake it is; whatever else Snakemake can do is added to that one.",
         allow_abbrev=False,
     )

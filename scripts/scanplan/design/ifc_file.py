@@ -44,9 +44,13 @@ class IfcPart:
     ----------
     kind : str
         `wall`, `glass`, `door`, `slab`, `furniture`, `space`, `opening` or `other`.
+    ifc_class : str
+        Such as IfcColumn.
     name : str
     fills : str
         Of an opening: `door`, `window` or `` (nothing is in it).
+    filler : str
+        Of an opening: the GlobalId of that.
     host : str
         Of an opening: the GlobalId of what it goes through.
     guid : str
@@ -59,8 +63,10 @@ class IfcPart:
     """
 
     kind: str
+    ifc_class: str
     name: str
     fills: str
+    filler: str
     host: str
     guid: str
     along: FloatArray
@@ -128,10 +134,15 @@ def parse_ifc(data: bytes, source: FilePath) -> IfcBuilding:
     return IfcBuilding(storeys, tuple(parts), (note,) if failed else ())
 
 
-def find_storey(model: IfcBuilding, chosen: str | int | None, source: FilePath) -> int:
+def find_storey(
+    model: IfcBuilding,
+    chosen: str | int | None,
+    source: FilePath,
+    key: str = "simulate.site.storey",
+) -> int:
     """Return the index of a storey by its name or its index from below.
 
-    None stands for the only one.
+    None stands for the only one. `key` is the setting that chooses it.
 
     Raises
     ------
@@ -213,8 +224,10 @@ def _part(product: Any, geometry: Any) -> IfcPart:
     length = np.hypot(*x_axis)
     return IfcPart(
         kind=_kind(product),
+        ifc_class=product.is_a(),
         name=_name(product),
         fills=_filling(product),
+        filler=next((element.GlobalId for element in _fillers(product)), ""),
         host=_host(product),
         guid=product.GlobalId,
         along=x_axis / length if length > 0 else np.array([1.0, 0.0]),
@@ -234,10 +247,14 @@ def _name(product: Any) -> str:
 
 def _filling(product: Any) -> str:
     """Return what is in an opening: `door`, `window` or nothing."""
-    elements = [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
+    elements = _fillers(product)
     if any(element.is_a("IfcDoor") for element in elements):
         return "door"
     return "window" if any(element.is_a("IfcWindow") for element in elements) else ""
+
+
+def _fillers(product: Any) -> list[Any]:
+    return [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
 
 
 def _host(product: Any) -> str:

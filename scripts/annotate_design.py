@@ -1,0 +1,56 @@
+"""Write a copy of a design that says how it was built, and topics for what differs."""
+
+import json
+from pathlib import Path
+
+from scanplan.exports.changes import annotated_ifc, bcf_topics, model_facts
+from scanplan.stage import log
+from scanplan.store import atomic, schemas, tables
+from scanplan.types import FilePath
+
+
+def annotate_design(
+    deviations: FilePath, design: FilePath, evidence: FilePath, model: FilePath, topics: FilePath
+) -> None:
+    """Write as_built.ifc and deviations.bcf.
+
+    Parameters
+    ----------
+    deviations : path-like
+        deviations.parquet.
+    design : path-like
+        The .ifc file that it was made of.
+    evidence : path-like
+        evidence.parquet of plan/: when the survey was.
+    model, topics : path-like
+        Files to write.
+
+    Raises
+    ------
+    StageError
+        If a file is damaged.
+    """
+    columns = tables.read_table(deviations, schemas.DEVIATIONS, allow_empty=True)
+    floor_m = float(json.loads(tables.read_note(deviations, schemas.DEVIATIONS, "floor_m")))
+    stamps = tables.read_table(evidence, schemas.EVIDENCE, allow_empty=True)["t_ns"]
+    facts = model_facts.gather_deviations(columns)
+    found = model_facts.list_topics(columns, floor_m)
+    name = Path(design).stem
+    at_ns = int(stamps.min()) if len(stamps) else 0
+    atomic.write_text(model, annotated_ifc.annotate_model(design, "Scanplan_AsBuilt", facts))
+    atomic.write_bytes(topics, bcf_topics.format_topics(name, found, at_ns))
+    log.log_line(
+        f"annotate_design: {len(facts)} elements with properties, {len(found)} topics of what"
+        " differs"
+    )
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        annotate_design(
+            snakemake.input.table,
+            snakemake.input.design,
+            snakemake.input.evidence,
+            snakemake.output.model,
+            snakemake.output.topics,
+        )

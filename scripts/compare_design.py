@@ -1,0 +1,119 @@
+"""Write how what was built differs from its design."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from scanplan.changes import change_table
+from scanplan.design import as_built, design_reading, deviation_table, deviations, tolerances
+from scanplan.exports import drawing, geojson, svg
+from scanplan.exports.changes import change_geojson, compared_sheet, design_sheet
+from scanplan.exports.data import element_tables
+from scanplan.exports.sheet.title import summarise_survey
+from scanplan.plan import floorplan_files
+from scanplan.project import code_files
+from scanplan.stage import figure_files, log
+from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.types import FilePath, Settings
+
+_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+
+
+def compare_design(
+    built: Mapping[str, FilePath],
+    design: FilePath,
+    outputs: Mapping[str, FilePath],
+    *,
+    name: str,
+    settings: Settings,
+    limits: Mapping[str, Any],
+    version: str = "",
+) -> None:
+    """Write deviations.parquet, and the deviations as CSV, GeoJSON and drawing.
+
+    Parameters
+    ----------
+    built : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms`, `free`, `furniture`, `evidence` and `confidence` of
+        plan/, `scans` and `registration`.
+    design : path-like
+        An .ifc or .dxf file.
+    outputs : dict of str to path-like
+        `table`, `csv`, `geojson`, `svg`, `pdf`, `png` and `summary`, to write.
+    name : str
+        Of the dataset.
+    settings : dict
+        What `export_plan` is told, and `design_storey`, name or number of a storey.
+    limits : dict
+        See `tolerance_file.read_tolerances`.
+    version : str
+        Of the software, for the title block.
+
+    Raises
+    ------
+    StageError
+        If the design is damaged, or the survey fits none of its storeys.
+    """
+    assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+    files = {part: built[part] for part in _PLAN}
+    plan = floorplan_files.read_floorplan(files, name, **assumed_m)
+    store = tables.ScanStore(built["scans"])
+    scans = store, registered_scans.read_registered_scans(built["registration"], store)
+    evidence = tables.read_table(built["evidence"], schemas.EVIDENCE, allow_empty=True)
+    allowed = tolerances.make_tolerances(limits)
+
+    storeys = design_reading.read_design(design)
+    found = as_built.compare_design(
+        storeys, Path(design).name, plan, scans, settings["design_storey"]
+    )
+    told = deviations.rate_deviations(found.compared, found.storey, allowed)
+
+    columns = deviation_table.tabulate_deviations(told)
+    lines = deviation_table.summarise_deviations(told)
+    tied = change_table.summarise_tie(found.compared.tie)
+    warnings = [as_built.warn_of_alike(found), change_table.warn_of_others(found.compared.tie)]
+    title = f"{name} against its design, {Path(design).name}, {found.storey.name}"
+    summary = [title, *lines, f"tolerances: {allowed.title}", tied, *filter(None, warnings)]
+    surveyed = summarise_survey(evidence).surveyed
+    facts = compared_sheet.ComparedFacts(settings["project"] or "", ("", surveyed), version)
+    sheet = design_sheet.compose_design_sheet(found, told, allowed.title, facts)
+    figure = drawing.draw_sheet(sheet)
+    rows = {
+        of: [geojson.round_value(value) for value in columns[of].tolist()]
+        for of in columns
+        if of != "geometry"
+    }
+    tables.write_table(
+        outputs["table"],
+        schemas.DEVIATIONS,
+        columns,
+        allow_empty=True,
+        notes=deviation_table.state_design(found, allowed.title),
+    )
+    drawn = change_geojson.format_changes(title, "deviation", columns, "; ".join(summary[1:]))
+    atomic.write_text(outputs["csv"], element_tables.format_csv(rows))
+    atomic.write_text(outputs["geojson"], drawn)
+    atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
+    atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
+    atomic.write_text(outputs["summary"], "\n".join([*summary, ""]))
+    for warning in filter(None, warnings):
+        log.log_warning(f"compare_design: {warning}")
+    log.log_line(f"compare_design: {'; '.join(lines)}; {tied}")
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        compare_design(
+            {
+                file_name.removeprefix("b_"): file
+                for file_name, file in snakemake.input.items()
+                if file_name.startswith("b_")
+            },
+            snakemake.input.design,
+            dict(snakemake.output.items()),
+            name=snakemake.wildcards.dataset,
+            settings=snakemake.params.settings,
+            limits=snakemake.params.limits,
+            version=code_files.state_version(),
+        )

@@ -1,0 +1,138 @@
+"""The storeys of a design in IFC."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import shapely
+from shapely import Polygon
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.design.drawn_storey import (
+    DrawnColumn,
+    DrawnOpening,
+    DrawnSpace,
+    DrawnStorey,
+    DrawnWall,
+    Solid,
+)
+from scanplan.design.ifc_file import IfcBuilding, IfcPart
+from scanplan.geometry import overlays
+from scanplan.types import FloatArray
+
+_LEAST_HIGH_M = 0.5  # of a wall: a lower one is a plinth or a kerb
+_LOW_M, _HIGH_M = 0.3, 2.0  # above the floor: what reaches in between stands in a storey
+_LEAST_STOREY_M = 1.0  # to the next floor: a level that is nearer is one of the same storey
+_STRAIGHT = 0.9  # of the rectangle around a wall's ground: mitres and gables leave out as much
+_SILL_M = 0.05  # a hole that begins lower can be gone through
+_GLASS_M = 0.3  # a window that begins lower is a pane down to the floor to whoever scans it
+_GRID_M = 1e-4  # of corners: a tenth of a millimetre
+_LEAST_M2 = 1e-4  # of a triangle seen from above: an upright one has nothing
+
+
+def list_storeys(model: IfcBuilding) -> list[DrawnStorey]:
+    """Return the storeys of a building model in which walls stand, from below."""
+    drawn = (_draw_storey(model, row) for row in range(len(model.storeys)))
+    return [storey for storey in drawn if storey.walls]
+
+
+def _draw_storey(model: IfcBuilding, row: int) -> DrawnStorey:
+    name, floor_m = model.storeys[row]
+    above_m = [z_m - floor_m for _, z_m in model.storeys if z_m > floor_m + _LEAST_STOREY_M]
+    within = {part.guid: _stand(part, floor_m) for part in model.parts}
+    top_m = max((solid.high_m for solid in within.values()), default=0.0)
+    height_m = min(above_m, default=top_m)
+    parts = [p for p in model.parts if _is_within(within[p.guid], height_m)]
+    walls: list[DrawnWall] = []
+    columns: list[DrawnColumn] = []
+    others: list[Solid] = []
+    for part in parts:
+        solid = within[part.guid]
+        if part.kind != "wall" or solid.ground.is_empty:
+            continue
+        wall = _draw_wall(part, solid)
+        if part.ifc_class.startswith("IfcColumn"):
+            columns.append(DrawnColumn(part.guid, part.name, solid))
+        elif wall is not None:
+            walls.append(wall)
+        else:
+            others.append(solid)
+    rows = {wall.guid: i for i, wall in enumerate(walls)}
+    openings = [
+        _draw_opening(part, within[part.guid], walls, rows)
+        for part in parts
+        if part.kind == "opening" and part.host in rows
+    ]
+    spaces = [space for p in parts if p.kind == "space" for space in _draw_space(p, within[p.guid])]
+    return DrawnStorey(
+        name, float(floor_m), float(height_m), walls, openings, spaces, columns, others
+    )
+
+
+def _stand(part: IfcPart, floor_m: float) -> Solid:
+    """Return the ground that a part covers, and how high above a floor it reaches."""
+    z_m = part.triangles_m[..., 2]
+    low_m, high_m = float(z_m.min()) - floor_m, float(z_m.max()) - floor_m
+    return Solid(_cover(part.triangles_m), low_m, high_m)
+
+
+def _cover(triangles_m: FloatArray) -> BaseGeometry:
+    """Return the ground below triangles: walls lean nowhere, so that their tops cover it all."""
+    shapes = shapely.polygons(triangles_m[..., :2])
+    flat = np.asarray(shapes, object)[shapely.area(shapes) > _LEAST_M2]
+    return overlays.unite_areas(flat, grid=_GRID_M)
+
+
+def _is_within(solid: Solid, height_m: float) -> bool:
+    reach_m = min(solid.high_m, _HIGH_M, height_m) - max(solid.low_m, _LOW_M)
+    return reach_m > 0 and solid.high_m > _LEAST_HIGH_M
+
+
+def _draw_wall(part: IfcPart, solid: Solid) -> DrawnWall | None:
+    """Return a wall along its own axis; None of one that is curved or has corners."""
+    line_m, thickness_m = _middle(part.along, solid.ground)
+    length_m = float(np.hypot(*(line_m[1] - line_m[0])))
+    if length_m <= thickness_m:
+        line_m, thickness_m = _middle(np.array([-part.along[1], part.along[0]]), solid.ground)
+        length_m = float(np.hypot(*(line_m[1] - line_m[0])))
+    if solid.ground.area < _STRAIGHT * length_m * thickness_m:
+        return None
+    return DrawnWall(part.guid, part.name, line_m, thickness_m, solid)
+
+
+def _middle(along: FloatArray, ground: BaseGeometry) -> tuple[FloatArray, float]:
+    """Return the middle line (2, 2) of some ground in a direction, and its width."""
+    across = np.array([-along[1], along[0]])
+    corners_m = shapely.get_coordinates(ground)
+    along_m, across_m = corners_m @ along, corners_m @ across
+    middle_m = (across_m.min() + across_m.max()) / 2
+    ends_m = np.array([along_m.min(), along_m.max()])
+    return ends_m[:, None] * along + middle_m * across, float(np.ptp(across_m))
+
+
+def _draw_opening(
+    part: IfcPart, solid: Solid, walls: list[DrawnWall], rows: Mapping[str, int]
+) -> DrawnOpening:
+    wall = walls[rows[part.host]]
+    along = (wall.line_m[1] - wall.line_m[0]) / np.hypot(*(wall.line_m[1] - wall.line_m[0]))
+    place_m = (shapely.get_coordinates(solid.ground) - wall.line_m[0]) @ along
+    line_m = wall.line_m[0] + np.array([[place_m.min()], [place_m.max()]]) * along
+    empty = "passage" if solid.low_m < _SILL_M else "window"
+    kind = part.fills or empty
+    kind = "glass" if kind == "window" and solid.low_m < _GLASS_M else kind
+    return DrawnOpening(
+        part.filler or part.guid,
+        part.name,
+        rows[part.host],
+        line_m,
+        kind,
+        max(solid.low_m, 0.0),
+        solid.high_m,
+    )
+
+
+def _draw_space(part: IfcPart, solid: Solid) -> Iterator[DrawnSpace]:
+    areas = shapely.get_parts(solid.ground)
+    if len(areas):
+        largest = max(areas.tolist(), key=lambda area: area.area)
+        if isinstance(largest, Polygon):
+            yield DrawnSpace(part.guid, part.name, largest)

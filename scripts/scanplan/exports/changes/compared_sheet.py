@@ -1,0 +1,167 @@
+"""The sheet of two plans over one another: what is told is numbered, and listed in a table."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.changes.change_words import ChangeWords
+from scanplan.exports.sheet import title
+from scanplan.exports.sheet.composition import Sheet
+from scanplan.exports.sheet.labels import Candidate, LabelSpace
+from scanplan.exports.sheet.lettering import clean_text, rotation, shorten_text
+from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
+from scanplan.exports.sheet.paper import Page, Slot, choose_page, fill_slots
+from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.exports.sheet.title import SheetFacts
+from scanplan.types import FloatArray
+
+_MOST_ROWS = 40  # of the table: more are in the files beside
+_LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
+_TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
+_HEADS = ("No.", "Element", "Verdict", "By, cm", "p")
+_COLUMNS_MM = (6.0, 16.0, 14.5, 16.0, 7.5)  # wide: of the table, a slot in all
+_BROAD = 1.25  # what letters are reckoned with beyond what those of numbers take
+
+
+@dataclass(frozen=True)
+class ComparedFacts:
+    """What the title block states of both: project, days, and the software."""
+
+    project: str
+    days: tuple[str, str]
+    version: str
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """What is told of an element.
+
+    Attributes
+    ----------
+    words : ChangeWords
+    shape : shapely geometry
+    """
+
+    words: ChangeWords
+    shape: BaseGeometry
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """From where something stood to where it stands: a place (2,) and a way (2,), metres."""
+
+    from_m: FloatArray
+    by_m: FloatArray
+
+
+def compose_compared_sheet(
+    name: str,
+    drawn: tuple[Sequence[Mark], Sequence[Symbol]],
+    told: Sequence[Told],
+    ways: Sequence[Way],
+    *,
+    turn_deg: float,
+    list_values: Callable[[Page], list[list[title.Value]]],
+) -> Sheet:
+    """Compose the sheet of marks and symbols with a title block, a legend, numbers and a table.
+
+    Parameters
+    ----------
+    list_values : callable
+        The title block's fields of a page.
+    """
+    marks, symbols = list(drawn[0]), list(drawn[1])
+    listed = told[:_MOST_ROWS]
+    legend = title.list_legend(marks, {symbol.kind for symbol in symbols})
+    paths = [path[:, :2] for mark in marks for path in mark.paths]
+    turned = np.concatenate(paths) @ rotation(turn_deg).T
+    blocks = [6, len(legend), max(len(listed), 1)]
+    page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, blocks)
+    bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
+    marks += [_draw_way(way, page) for way in ways]
+    beside: list[Mark | Word] = [
+        *title.draw_frame(page),
+        *title.draw_block(page, list_values(page)),
+        *title.draw_scale_bar(page, bar[0]),
+        *title.draw_legend(legend, legend_slots),
+        *_draw_table([of.words for of in listed], table_slots),
+    ]
+    return Sheet(
+        clean_text(name),
+        page,
+        SheetFacts(),
+        marks,
+        symbols,
+        list(_place_tags(page, told, marks)),
+        [],
+        [],
+        [item for item in beside if isinstance(item, Mark)],
+        [item for item in beside if isinstance(item, Word)],
+    )
+
+
+def draw_areas(kind: str, shape: BaseGeometry, element: str) -> Iterator[Mark]:
+    """Yield the polygons of a shape as marks."""
+    for part in shapely.get_parts(shape):
+        if part.geom_type == "Polygon" and not part.is_empty:
+            paths = [straight(shapely.get_coordinates(r)) for r in shapely.get_rings(part)]
+            yield Mark(kind, paths, True, element)
+
+
+def _draw_way(way: Way, page: Page) -> Mark:
+    """Return an arrow as long as is seen."""
+    length_m = float(np.hypot(*way.by_m))
+    along = way.by_m / length_m
+    side = np.array([-along[1], along[0]])
+    tip_m = way.from_m + along * max(length_m, _LEAST_WAY_MM / page.mm_per_m)
+    head_m = 1.5 / page.mm_per_m
+    base_m = tip_m - head_m * along
+    corners = [way.from_m, base_m, base_m + head_m / 3 * side, tip_m, base_m - head_m / 3 * side]
+    return Mark("way", [straight(np.array([*corners, base_m, way.from_m]))], True)
+
+
+def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[Word]:
+    """Yield the table: number, element, what became of it, by how much."""
+    places = [
+        (slot.x_mm, slot.y_mm - (row + 1.5) * Paper.ROW)
+        for slot in slots
+        for row in range(slot.rows)
+    ]
+
+    def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
+        for text, width in zip(texts, _COLUMNS_MM, strict=True):
+            place = np.array([x + Paper.GAP, y])
+            short = shorten_text(text, Letters.SMALL, _BROAD * width)
+            yield Word(kind, short, place, Letters.SMALL, 0.0, 0.0)
+            x += width
+
+    for slot in slots:
+        yield from write("note", slot.x_mm, slot.y_mm - Paper.ROW / 2, _HEADS)
+    if not rows and places:
+        yield from write("title", *places[0], ("", "none", "", "", ""))
+    for number, (row, place) in enumerate(zip(rows, places, strict=False), 1):
+        yield from write("title", *place, (str(number), *row))
+
+
+def _place_tags(page: Page, told: Sequence[Told], marks: Sequence[Mark]) -> Iterator[Word]:
+    """Yield numbers beside elements, clear of each other and of what is drawn."""
+    walls = [shapely.Polygon(page.to_paper(mark.paths[0][:, :2])) for mark in marks if mark.closed]
+    space = LabelSpace(page.drawing_mm, walls, [])
+    for number, of in enumerate(told, 1):
+        middle = page.to_paper(shapely.get_coordinates(of.shape.centroid)[0])
+        found = space.place(_candidates(str(number), middle))
+        if found is not None:
+            word = found.words[0]
+            place_m = page.to_plan(word.place)
+            yield Word("width", word.text, place_m, word.size_mm, -page.turn_deg)
+
+
+def _candidates(text: str, middle: FloatArray) -> Iterator[Candidate]:
+    for far in _TAG_MM:
+        for turn_deg in range(0, 360, 45):
+            way = rotation(turn_deg)[:, 0]
+            word = Word("width", text, middle + far * way, Letters.MEDIUM)
+            yield Candidate([word], far)
