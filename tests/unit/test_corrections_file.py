@@ -36,6 +36,21 @@ def test_entries_are_read_as_they_stand(tmp_path):
     assert (point.world_m, point.crs) == ((500000.0, 5400000.0), "EPSG:25832")
 
 
+def test_sizes_places_and_who_said_it_are_read(tmp_path):
+    text = """\
+survey: office 0123
+corrections:
+- {element: wall, at: [1, 2], line: [[0, 0], [4, 0]], thickness_m: 0.36}
+- {element: opening, at: [3, 0], width_m: 0.9, lintel_m: 2.1, when: "2026-03-01T09:30:00Z", by: A}
+- {element: room, action: merge, at: [1, 2], with: [5, 2]}
+- {element: room, at: [1, 2], number: "2.14"}
+"""
+    wall, opening, merged, room = read_corrections(written(tmp_path, text))
+    assert (wall.action, wall.at_m, wall.line_m) == ("change", (1, 2), ((0, 0), (4, 0)))
+    assert (wall.thickness_m, opening.width_m, opening.lintel_m) == (0.36, 0.9, 2.1)
+    assert (merged.with_m, room.number, room.name) == ((5.0, 2.0), "2.14", "")
+
+
 def test_geojson_says_the_same(tmp_path):
     geometries = {
         "at": lambda place: {"type": "Point", "coordinates": place},
@@ -63,7 +78,14 @@ def test_geojson_says_the_same(tmp_path):
             "element is 'wal', expected one of check_point",
         ),
         ("{element: wall, at: [1, 2], action: paint}", "action of a wall is 'paint', expected"),
-        ("{element: wall, at: [1, 2]}", "action of a wall is 'change', expected one of keep"),
+        ("{element: wall, at: [1, 2]}", "has no kind or line or thickness_m; to change a wall"),
+        ("{element: wall, at: [1, 2], kind: door}", "kind is 'door', expected one of furniture"),
+        ("{element: opening, at: [1, 2], width_m: 0}", "width_m is 0, expected 0.05 to 1000 m"),
+        ("{element: opening, at: [1, 2], sill_m: 2, lintel_m: 1.5}", "sill_m is not below"),
+        ("{element: room, action: merge, at: [1, 2]}", "has no with; to merge a room takes"),
+        ("{element: room, action: split, at: [1, 2]}", "has at; to split a room takes line"),
+        ("{element: wall, at: [1, 2], action: keep, when: noon}", "when is 'noon', expected a"),
+        ("{element: wall, at: [1, 2], action: keep, by: 5}", "by is 5, expected text of 1 to 80"),
         ("{element: wall, at: [1], action: keep}", "at is [1], expected two numbers"),
         ("{element: wall, at: [1, .inf], action: keep}", "expected two numbers"),
         ("{element: wall, at: [1, yes], action: keep}", "expected two numbers"),
