@@ -55,6 +55,8 @@ _KINDS = {
 """What a person may call an opening, and what is drawn as a wall."""
 _PLACES = ("at", "line", "with", "world")
 """Keys of places, in metres."""
+_DIGITS = 12
+"""Of a digest of recordings: no two surveys that a person has are of the same."""
 _SURVEY = "survey"
 """Beside the entries: the survey whose plan they are of, by its name and a digest."""
 
@@ -107,6 +109,17 @@ class Correction:
     with_m: tuple[float, float] | None = None
     world_m: tuple[float, float] | None = None
     crs: str = ""
+
+
+def name_survey(name: str, made_of: str) -> str:
+    """Return what a file of corrections calls the survey whose plan it is of.
+
+    Parameters
+    ----------
+    made_of : str
+        Digest of its recordings, empty where it is not known.
+    """
+    return f"{name} {made_of[:_DIGITS]}".strip()
 
 
 def find_corrections(folder: Path) -> str | None:
