@@ -3,6 +3,8 @@
 import json
 import re
 import shutil
+import sys
+import threading
 
 import pytest
 
@@ -10,6 +12,8 @@ from helpers import report_making
 from helpers.correcting import corrected, write_plan
 from helpers.pages import click, in_sight, middle_of, needs_browser, press, text_of
 from scanplan.project import corrections_file
+from scanplan.project.run.edit_server import EditServer
+from scanplan.project.run.edit_session import EditSession
 
 pytestmark = needs_browser
 CTRL, SHIFT = 2, 8  # of DevTools' modifier keys
@@ -348,3 +352,96 @@ def test_a_page_of_a_plan_without_doubts_is_an_editor_too(chromium, tmp_path):
     shutil.copy(files["walls"], tmp_path / "copy.parquet")
     page = chromium.open(report_making.written(tmp_path, files, name="office").as_uri())
     assert page.complaints == []
+
+
+# what a run would do: the page of a plan with what was saved
+RUN = """
+import json, shutil, sys
+print(" 1/1 office correct_plan:  0.1 s  1 of 1 corrections applied", flush=True)
+shutil.copy(sys.argv[1], sys.argv[2])
+"""
+
+
+@pytest.fixture
+def served(chromium, tmp_path):
+    """A page behind its server, and the folder of its recording; a run puts another page there."""
+    results, recording = tmp_path / "results/office", tmp_path / "recording"
+    results.mkdir(parents=True)
+    recording.mkdir()
+    files = report_making.files(tmp_path)
+    first = report_making.written(tmp_path, files, name="office")
+    shutil.copy(first, results / "report.html")
+    files["corrections"] = tmp_path / "corrections.yaml"
+    wall = {"element": "wall", "at": [1.975, 3.1], "action": "remove"}
+    files["corrections"].write_text(f"corrections:\n- {json.dumps(wall)}\n")
+    after = report_making.written(tmp_path, files, name="office", output="after.html")
+    note = {"dataset": "recording", "storeys": [], "settings": {}}
+    (results / "run.json").write_text(json.dumps(note))
+    run = [sys.executable, "-c", RUN, str(after), str(results / "report.html")]
+    with EditServer(EditSession(results, run)) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+        thread.start()
+        try:
+            chromium.open(server.address)
+            settle(chromium, "!document.getElementById('save').hidden")
+            yield chromium, server, recording
+        finally:
+            server.shutdown()
+            thread.join()
+    # what the server refuses the browser notes itself
+    known = ("request of http://127.0.0.1", "Failed to load resource: the server responded")
+    assert all(said.startswith(known) for said in chromium.complaints)
+
+
+def settle(page, condition):
+    """Wait for what a page does by itself."""
+    for _ in range(200):
+        if page.run(condition):
+            return
+        page.run("new Promise(done => setTimeout(done, 25))")
+    raise AssertionError(condition)
+
+
+def test_what_is_saved_is_carried_out_and_the_page_shows_the_new_plan(served):
+    page, _, recording = served
+    page.run("edits.change('wall 3', {action: 'remove'})")
+    press(page, "Save and make the plan anew", "#corrections")
+    settle(page, "document.getElementById('n-known')?.textContent === '1'")
+    settle(page, "!document.getElementById('save').hidden")
+    (wall,) = corrections_file.read_corrections(recording / "corrections.yaml")
+    assert (wall.action, wall.at_m) == ("remove", (1.975, 3.1))
+    assert text_of(page, "#n-fresh") == "No changes yet" and text_of(page, "#told") == ""
+
+
+def test_two_pages_lose_nothing(served):
+    page, server, recording = served
+    theirs = {"element": "room", "at": [2.0, 1.5], "name": "Theirs"}
+    server.session.save({"survey": "office", "revision": "", "entries": [theirs]})
+    server.session._listener.join()
+    page.run("edits.change('wall 3', {action: 'remove'})")
+    press(page, "Save and make the plan anew", "#corrections")
+    settle(page, "document.getElementById('told').textContent.includes('Another page')")
+    press(page, "Save and make the plan anew", "#corrections")
+    settle(page, "document.getElementById('n-known')?.textContent === '1'")
+    saved = corrections_file.read_corrections(recording / "corrections.yaml")
+    assert {(c.element, c.name) for c in saved} == {("room", "Theirs"), ("wall", "")}
+
+
+def test_a_page_older_than_the_results_says_so_and_keeps_its_changes(served):
+    page, server, _ = served
+    page.run("edits.change('wall 4', {action: 'remove'})")
+    path = server.session.results / "report.html"
+    text = path.read_text()
+    made = re.search(r'"made": "(\w+)"', text)[1]
+    path.write_text(text.replace(made, "0" * 12))
+    page.run("dispatchEvent(new Event('focus'))")
+    settle(page, "document.getElementById('told').textContent.includes('newer than this page')")
+    assert len(entries(page)) == 1
+
+
+def test_a_fault_is_told_in_one_line_and_nothing_is_lost(served):
+    page, _, recording = served
+    page.run("edits.add({element: 'wall', action: 'add', line: [[0, 0], [0, 0.01]]})")
+    press(page, "Save and make the plan anew", "#corrections")
+    settle(page, "document.getElementById('told').textContent.includes('0.01 m long')")
+    assert len(entries(page)) == 1 and not (recording / "corrections.yaml").exists()

@@ -6,7 +6,7 @@ import os
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.corrections_file import find_corrections, read_corrections, read_entries
+from scanplan.project.corrections_file import find_beside, read_corrections, read_entries
 
 GOOD = """\
 corrections:
@@ -168,12 +168,12 @@ def test_reference_points_in_two_systems_are_told(tmp_path):
 
 
 def test_one_file_of_corrections_is_used(tmp_path):
-    assert find_corrections(tmp_path) is None
+    assert find_beside(tmp_path / "corrections.yaml") is None
     path = written(tmp_path, GOOD)
-    assert find_corrections(tmp_path) == str(path)
+    assert find_beside(tmp_path / "corrections.yaml") == path
     written(tmp_path, "{}", "corrections.geojson")
     with pytest.raises(StageError, match="keep one of the two"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
 
 
 @pytest.mark.parametrize("geometry", ['"Point"', "[1, 2]", "5", "null", "true"])
@@ -206,12 +206,12 @@ def test_what_is_no_file_is_told(tmp_path, name):
     path = tmp_path / name
     path.symlink_to(tmp_path / "nowhere")
     with pytest.raises(StageError, match=f"{name}: is a link that leads nowhere"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
     path.unlink()
     path.mkdir()
     with pytest.raises(StageError, match=f"{name}: is a folder, expected a file"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
     path.rmdir()
     os.mkfifo(path)
     with pytest.raises(StageError, match=f"{name}: is a pipe, expected a file"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")

@@ -122,8 +122,25 @@ def name_survey(name: str, made_of: str) -> str:
     return f"{name} {made_of[:_DIGITS]}".strip()
 
 
-def find_corrections(folder: Path) -> str | None:
-    """Return the file of corrections in a dataset's folder, None without.
+def place_corrections(name: str, path: FilePath | None, *, is_simulated: bool) -> Path:
+    """Return where corrections of a dataset are looked for, and written: beside its recording.
+
+    Parameters
+    ----------
+    name : str
+        Of its folder below results/, where the recording of a simulated one lies.
+    path : path-like or None
+        Its folder, or its only recording; the demo if None.
+    """
+    if is_simulated or path is None:
+        return Path("results", name, "survey", CORRECTIONS_FILES[0])
+    if Path(path).is_dir():
+        return Path(path, CORRECTIONS_FILES[0])
+    return Path(f"{path}.{CORRECTIONS_FILES[0]}")
+
+
+def find_beside(place: Path) -> Path | None:
+    """Return the file of corrections at a place, or that of GeoJSON beside it; None without.
 
     Raises
     ------
@@ -131,11 +148,11 @@ def find_corrections(folder: Path) -> str | None:
         If there are two, or one is no file.
     """
     remedy = "write the corrections there, or remove it"
-    named = [user_file.find_file(folder / name, remedy) for name in CORRECTIONS_FILES]
-    found = [path for path in named if path is not None]
+    files = [place.with_suffix(Path(name).suffix) for name in CORRECTIONS_FILES]
+    found = [file for file in files if user_file.find_file(file, remedy) is not None]
     if len(found) > 1:
         raise StageError(f"{found[0]}: {found[1].name} lies beside it; keep one of the two")
-    return str(found[0]) if found else None
+    return found[0] if found else None
 
 
 def read_entries(path: FilePath) -> list[dict[str, Any]]:

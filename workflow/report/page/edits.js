@@ -61,18 +61,14 @@ const edits = (() => {
       ({ steps, done } = stored);
       return "";
     }
-    return follow(given, stored.given, stored.steps.slice(0, stored.done).reduce(replace, stored.given));
-  }
-  function follow(now, before, mine) {
-    given = now;
-    steps = rebase(before, mine, now);
+    const mine = stored.steps.slice(0, stored.done).reduce(replace, stored.given);
+    steps = rebase(stored.given, mine, given);
     done = steps.length;
     return done ? `The plan was made anew since; ${count(done, "change")} of yours not in it ${done > 1 ? "are" : "is"} kept.` : "";
   }
   const count = (n, noun) => `${n} ${noun}${n === 1 ? "" : "s"}`;
 
-  function step(before, after) {
-    const stamp = { when: new Date().toISOString().replace(/\.\d+/, ""), ...(by ? { by } : {}) };
+  function step(before, after, stamp = { when: new Date().toISOString().replace(/\.\d+/, ""), ...(by ? { by } : {}) }) {
     steps = [...steps.slice(0, done), { before: before ?? null, after: after && { ...after, ...stamp } }];
     done = steps.length;
     store();
@@ -108,7 +104,8 @@ const edits = (() => {
   // what of this page an entry is of: nothing where it is added anew, or gone already
   function elementOf(entry) {
     const isIn = has(given, entry);
-    if (isOutline(entry) || (isIn ? entry.action === "remove" : entry.action === "add")) return undefined;
+    const isGone = entry.action === "remove" || (entry.element === "wall" && entry.kind);
+    if (isOutline(entry) || (isIn ? isGone : entry.action === "add")) return undefined;
     if (!["wall", "face", "opening", "room"].includes(entry.element)) return undefined;
     return nearest(entry.element, isIn && entry.line ? middle(entry.line) : entry.at);
   }
@@ -134,6 +131,15 @@ const edits = (() => {
     return [[x - dx, y - dy], [x + dx, y + dy]].map((end) => end.map((m) => Number(m.toFixed(3))));
   }
 
+  // what others have saved since this page was made; of an element that both spoke of, what was said here stays
+  function adopt(saved) {
+    for (const entry of saved) {
+      const other = current.find((old) => identify(old) === identify(entry));
+      if (!has(current, entry) && !has(given, entry) && !(other && !has(given, other))) step(other, entry, {});
+    }
+    for (const entry of given) if (!has(saved, entry) && has(current, entry)) step(entry, null);
+  }
+
   const news = load();
   addEventListener("storage", (event) => {
     if (event.key !== key || !event.newValue) return;
@@ -150,7 +156,7 @@ const edits = (() => {
     add: (entry) => step(null, entry),
     takeBack: (entry) => step(entry, null),
     bring: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
-    follow: (now) => { const told = follow(now, given, current); store(); changed(); return told; },
+    adopt,
     undo: () => { done = Math.max(0, done - 1); store(); changed(); },
     redo: () => { done = Math.min(steps.length, done + 1); store(); changed(); },
     canUndo: () => done > 0,

@@ -99,7 +99,7 @@
     revision: "",
   };
   async function connect() {
-    if (location.protocol !== "http:") return;
+    if (location.protocol !== "http:" || !byId("run-progress").hidden) return;
     try {
       const state = await server.ask("state");
       if (state.status !== 200) return tell(state.error, true);
@@ -107,16 +107,11 @@
       byId("save").hidden = false;
       byId("by-hand").hidden = true;
       if (state.page !== data.made) tell("The results are newer than this page: reload it. Your changes are kept.", true);
-      else meet(state.entries);
+      edits.adopt(state.entries);
       if (state.running) watch();
     } catch {
       tell("The server does not answer: changes are kept in this browser.", true);
     }
-  }
-  // what others saved since this page was made
-  function meet(entries) {
-    const n = entries.filter((entry) => edits.isNew(entry)).length;
-    if (n && !edits.fresh().length) for (const entry of entries) if (edits.isNew(entry)) edits.bring(entry);
   }
   byId("save").addEventListener("click", async () => {
     byId("save").disabled = true;
@@ -124,7 +119,7 @@
       const answer = await server.ask("corrections", { survey: data.survey, revision: server.revision, entries: edits.entries() });
       if (answer.status === 409 && answer.entries) {
         server.revision = answer.revision;
-        edits.follow(answer.entries);
+        edits.adopt(answer.entries);
         tell(`${answer.error} Yours are kept beside them: save again.`, true);
       } else if (answer.status !== 200) {
         tell(answer.error, true);
@@ -157,4 +152,5 @@
   else if (!edits.keeps()) tell("This browser keeps nothing of this page: download before you close it.", true);
   edits.begin();
   connect();
+  addEventListener("focus", connect);
 })();
