@@ -375,8 +375,7 @@ def served(chromium, tmp_path):
     wall = {"element": "wall", "at": [1.975, 3.1], "action": "remove"}
     files["corrections"].write_text(f"corrections:\n- {json.dumps(wall)}\n")
     after = report_making.written(tmp_path, files, name="office", output="after.html")
-    note = {"dataset": "recording", "storeys": [], "settings": {}}
-    (results / "run.json").write_text(json.dumps(note))
+    (results / "source.txt").write_text("recording\n")
     run = [sys.executable, "-c", RUN, str(after), str(results / "report.html")]
     with EditServer(EditSession(results, run)) as server:
         thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})

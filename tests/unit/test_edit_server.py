@@ -36,7 +36,8 @@ def folder(tmp_path):
     (results / ".hidden.html").write_text("no")
     (tmp_path / "secret.txt").write_text("no")
     (results / "link.txt").symlink_to(tmp_path / "secret.txt")
-    note = {"dataset": "rec", "storeys": [], "settings": {"plan": {"merge": {"min_scans": 3}}}}
+    (results / "source.txt").write_text("rec\n")
+    note = {"storeys": [], "settings": {"plan": {"merge": {"min_scans": 3}}}}
     (results / "run.json").write_text(json.dumps(note))
     return results
 
@@ -151,6 +152,15 @@ def test_the_run_gets_the_dataset_and_the_settings_that_made_the_results(folder)
         told = "\n".join(server.session._lines)
     assert "'--configfile'" in told and "min_scans: 3" in told
     assert """'--config', 'dataset=["rec"]'""" in told
+
+
+def test_storeys_of_a_building_are_made_together(folder):
+    note = {"storeys": ["cellar", "rec"], "settings": {}}
+    (folder / "run.json").write_text(json.dumps(note))
+    with serving(folder) as server:
+        save(server, WALL)
+        wait(server)
+        assert server.session._lines[-1] == """['--config', 'dataset=["cellar", "rec"]']"""
 
 
 def test_a_run_that_fails_is_told_in_one_line(folder):
@@ -319,7 +329,6 @@ def test_a_folder_that_cannot_be_written_to_is_told(server, folder):
 
 
 def test_a_lone_recording_has_its_corrections_beside_it(folder):
-    (folder / "run.json").unlink()
     (folder / "source.txt").write_text("rec/my.bag\n")
     (folder.parents[1] / "rec/my.bag").touch()
     session = EditSession(folder, [])
@@ -327,7 +336,6 @@ def test_a_lone_recording_has_its_corrections_beside_it(folder):
 
 
 def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):
-    (folder / "run.json").unlink()
     (folder / "source.txt").write_text("the simulated demo\n")
     (folder / "survey").mkdir()
     assert EditSession(folder, []).place == folder / "survey/corrections.yaml"
@@ -337,7 +345,10 @@ def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):
     ("break_it", "told"),
     [
         (lambda f: (f / "report.html").unlink(), "there is no such report"),
-        (lambda f: (f / "run.json").unlink(), "source.txt: does not exist; run the dataset again"),
+        (
+            lambda f: (f / "source.txt").unlink(),
+            "source.txt: does not exist; run the dataset again",
+        ),
         (lambda f: (f / "run.json").write_text("[]"), "does not say how the results were made"),
         (
             lambda f: (f.parents[1] / "rec").rename(f / "elsewhere"),

@@ -209,12 +209,10 @@ onsuccess:
         for name, dataset in GIVEN.items():
             or_end(end_results, name, dataset.source)
     if is_whole() and has_files_here():
-        storeys = [
-            storey.dataset for storey in (BUILDING.storeys if BUILDING else ())
-        ]
-        together = [NAMED[storey] for storey in storeys]
-        for name in GIVEN:
-            or_end(write_note, name, NAMED[name], together, KNOWN["given"])
+        storeys = BUILDING.storeys if BUILDING else ()
+        together = [GIVEN[storey.dataset].source for storey in storeys]
+        for name, dataset in GIVEN.items():
+            or_end(write_note, name, dataset.source, together, KNOWN["given"])
     tell_results()
     tell_overview()
     if optional_stages.read_left_out():

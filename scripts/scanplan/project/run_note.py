@@ -26,7 +26,7 @@ class RunNote:
     Attributes
     ----------
     dataset : str or None
-        Path of the dataset, as given; None of the demo.
+        Path of the dataset; None of the demo.
     storeys : list of str
         Likewise of all storeys of its building, from the lowest up; none where it is of none.
     settings : dict
@@ -38,11 +38,15 @@ class RunNote:
     settings: dict[str, Any]
 
 
-def write_note(name: str, path: str | None, storeys: Sequence[str], given: Sequence[Layer]) -> None:
-    """Note how a dataset's results were made: see `RunNote`.
+def write_note(name: str, source: str, storeys: Sequence[str], given: Sequence[Layer]) -> None:
+    """Note how a dataset's results were made, beside what they were made of.
 
     Parameters
     ----------
+    source : str
+        The dataset, as `provenance.identify_source` names it.
+    storeys : sequence of str
+        Likewise those of a building, if the run had one.
     given : sequence of settings.Layer
         The command's settings; later ones win over those before them.
     """
@@ -50,13 +54,13 @@ def write_note(name: str, path: str | None, storeys: Sequence[str], given: Seque
     for layer in given:
         settings = merge_settings(settings, layer.values)
     kept = {key: value for key, value in settings.items() if key not in _OF_RUNS}
-    note = RunNote(path, list(storeys) if path in storeys else [], kept)
-    text = json.dumps(vars(note), indent=1, sort_keys=True, default=str)
+    note = {"storeys": list(storeys) if source in storeys else [], "settings": kept}
+    text = json.dumps(note, indent=1, sort_keys=True, default=str)
     atomic.write_text(Path("results", name, _NOTE), f"{text}\n")
 
 
 def read_note(results: Path) -> RunNote:
-    """Return how results were made; of those of an older release the dataset alone is known.
+    """Return how results were made; of those of an older release settings are not known.
 
     Raises
     ------
@@ -65,10 +69,11 @@ def read_note(results: Path) -> RunNote:
     """
     note, source = results / _NOTE, results / provenance.RECORD
     remedy = "run the dataset again"
+    first, *_ = user_file.read_text(source, remedy).splitlines() or [""]
+    dataset = None if first == provenance.DEMO else first
     if not note.is_file():
-        first, *_ = user_file.read_text(source, remedy).splitlines() or [""]
-        return RunNote(None if first == provenance.DEMO else first, [], {})
+        return RunNote(dataset, [], {})
     try:
-        return RunNote(**json.loads(user_file.read_text(note, remedy)))
+        return RunNote(dataset, **json.loads(user_file.read_text(note, remedy)))
     except (ValueError, TypeError, RecursionError):
         raise StageError(f"{note}: does not say how the results were made; {remedy}") from None
