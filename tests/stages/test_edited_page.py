@@ -1,10 +1,12 @@
 """The report as an editor: what a person says there is drawn, kept, taken back and written."""
 
+import contextlib
 import json
 import re
 import shutil
 import sys
 import threading
+import time
 
 import pytest
 
@@ -393,11 +395,12 @@ def served(chromium, tmp_path):
 
 
 def settle(page, condition):
-    """Wait for what a page does by itself."""
-    for _ in range(200):
-        if page.run(condition):
-            return
-        page.run("new Promise(done => setTimeout(done, 25))")
+    """Wait for what a page does by itself; one that is about to be another one says nothing."""
+    for _ in range(400):
+        with contextlib.suppress(AssertionError):
+            if page.run(condition):
+                return
+        time.sleep(0.025)
     raise AssertionError(condition)
 
 

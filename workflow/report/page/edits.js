@@ -9,8 +9,16 @@ const edits = (() => {
   let by = "";
   const listeners = [];
 
+  // entries never change: what was worked out of one holds
+  function remember(work) {
+    const known = new WeakMap();
+    return (entry) => {
+      if (!known.has(entry)) known.set(entry, work(entry));
+      return known.get(entry);
+    };
+  }
   // who said it, and when, makes no other entry of it
-  const said = (entry) => JSON.stringify(Object.entries(entry).filter(([name]) => name !== "when" && name !== "by").sort());
+  const said = remember((entry) => JSON.stringify(Object.entries(entry).filter(([name]) => name !== "when" && name !== "by").sort()));
   const has = (list, entry) => list.some((other) => said(other) === said(entry));
   const isOutline = (entry) => entry.action === "split" || entry.action === "merge";
   const identify = (entry) => JSON.stringify([entry.element, isOutline(entry), entry.at ?? entry.line]);
@@ -21,8 +29,10 @@ const edits = (() => {
     return list.toSpliced(at, 1, ...(after ? [after] : []));
   }
   let current = given;
+  let entryAt = new Map();
   function changed() {
     current = steps.slice(0, done).reduce(replace, given);
+    entryAt = new Map(current.map((entry) => [elementOf(entry), entry]).reverse());
     for (const listener of listeners) listener();
   }
 
@@ -98,18 +108,22 @@ const edits = (() => {
   function nearest(kind, at, within = reach) {
     if (kind === "room") return parts(kind).find((part) => part.isPointInFill(new DOMPoint(at[0], -at[1])))?.dataset.element;
     if (!lines.has(kind)) lines.set(kind, parts(kind).map(({ dataset }) => [dataset.element, lineOf(dataset.element)]));
-    const far = lines.get(kind).map(([element, line]) => [distance(at, line), element]).sort((a, b) => a[0] - b[0]);
-    return far.length && far[0][0] <= within ? far[0][1] : undefined;
+    let found;
+    for (const [element, line] of lines.get(kind)) {
+      const far = distance(at, line);
+      if (far <= within) [within, found] = [far, element];
+    }
+    return found;
   }
   // what of this page an entry is of: nothing where it is added anew, or gone already
-  function elementOf(entry) {
+  const elementOf = remember((entry) => {
     const isIn = has(given, entry);
     const isGone = entry.action === "remove" || (entry.element === "wall" && entry.kind);
     if (isOutline(entry) || (isIn ? isGone : entry.action === "add")) return undefined;
     if (!["wall", "face", "opening", "room"].includes(entry.element)) return undefined;
     return nearest(entry.element, isIn && entry.line ? middle(entry.line) : entry.at);
-  }
-  const entryOf = (element) => current.find((entry) => elementOf(entry) === element);
+  });
+  const entryOf = (element) => entryAt.get(element);
 
   // what is said of an element joins what was said of it before
   function change(element, more) {
