@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 
 from helpers import report_making
@@ -16,6 +17,8 @@ from helpers.pages import click, in_sight, middle_of, needs_browser, press, text
 from scanplan.project import corrections_file
 from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
+from scanplan.store import schemas, tables
+from scanplan.validation import doubts
 
 pytestmark = needs_browser
 CTRL, SHIFT = 2, 8  # of DevTools' modifier keys
@@ -447,3 +450,21 @@ def test_a_fault_is_told_in_one_line_and_nothing_is_lost(served):
     press(page, "Save and make the plan anew", "#corrections")
     settle(page, "document.getElementById('told').textContent.includes('0.01 m long')")
     assert len(entries(page)) == 1 and not (recording / "corrections.yaml").exists()
+
+
+def test_what_matters_less_is_asked_when_the_rest_is_answered(chromium, tmp_path, monkeypatch):
+    monkeypatch.setattr(doubts, "MOST", 1)
+    files = report_making.files(tmp_path)
+    rated = report_making.confidence()
+    # two walls more
+    rows = np.flatnonzero(rated["table"] == "walls")[3:5]
+    rated["verify"][rows], rated["doubt"][rows], rated["about"][rows] = True, "few", "existence"
+    tables.write_table(files["confidence"], schemas.CONFIDENCE, rated)
+    page = chromium.open(report_making.written(tmp_path, files, name="more").as_uri())
+    assert text_of(page, "#how-far") == "0 of 1 answered"
+    press(page, "Start", "#walk")
+    page.key("y")
+    assert "2 more things may be looked at" in text_of(page, "#question")
+    press(page, "Go on with these", "#walk")
+    assert text_of(page, "#how-far") == "1 of 3 answered"
+    assert text_of(page, "#walk .where") == "2 of 3"

@@ -4,11 +4,14 @@
   const { make, button } = choices;
   const section = document.getElementById("walk");
   if (!section) return;
-  const ask = [...document.querySelectorAll("#verify [data-show]")].map((item) => ({
+  const all = [...document.querySelectorAll("#verify [data-show]")].map((item) => ({
     item, element: item.dataset.show, about: item.dataset.about,
     question: item.querySelector(".question").textContent, note: item.querySelector(".note").textContent,
     room: item.closest("ol").previousElementSibling?.textContent ?? "",
   }));
+  // those of which an error costs most come first; the others where a person goes on
+  const main = all.filter(({ item }) => !item.closest("details details"));
+  let ask = main;
   const [question, note, answers, progress, said] = ["question", "why", "answers", "progress", "how-far"].map((id) => document.getElementById(id));
   const phone = matchMedia("(max-width: 900px)");
   let at = 0;
@@ -54,8 +57,17 @@
     const n = ask.length - left;
     progress.value = n;
     said.textContent = `${n} of ${ask.length} answered`;
-    for (const { item, element } of ask) item.classList.toggle("answered", edits.entryOf(element) !== undefined);
+    progress.max = ask.length;
+    for (const { item, element } of all) item.classList.toggle("answered", edits.entryOf(element) !== undefined);
     section.classList.toggle("done", left === 0);
+    const rest = all.filter((each) => !answer(each)).length - left;
+    if (left === 0 && rest && ask === main) {
+      question.textContent = `All that matter most are answered. ${edits.count(rest, "more thing")} may be looked at.`;
+      note.textContent = "";
+      answers.replaceChildren(button("Go on with these", () => { ask = all; start(); }, { class: "main" }),
+        ...(isOn ? [button("Stop", end, { class: "plain" })] : []));
+      return;
+    }
     if (!isOn) {
       question.textContent = left ? `${edits.count(left, "thing")} to look at, room by room.` : "All of them are answered.";
       note.textContent = "";
