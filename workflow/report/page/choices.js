@@ -92,6 +92,7 @@ const choices = (() => {
     button(words, () => { edits.change(element, { action: "keep" }); then(); }, { class: "right" });
 
   const nouns = { keep: "is right", remove: "is not there" };
+  const gone = { opening: "is wall", room: "is outside" };
   function describe(entry) {
     const { element, action, kind, line, thickness_m, width_m, sill_m, lintel_m, name, number } = entry;
     if (element.endsWith("_point")) return element.replace("_", " ");
@@ -102,7 +103,7 @@ const choices = (() => {
     if (action === "merge") return `${named(entry.at)} and ${named(entry.with)} are one`;
     if (action === "split") return `${named(edits.middle(line))} is two rooms`;
     const cm = (text, m) => m !== undefined && `${text} ${Number((100 * m).toFixed(1))} cm`;
-    const parts = [nouns[action], kind && `is ${kinds[kind] ?? (kind === "column" ? "a column" : kind)}`, line && !action && "moved", cm("thickness", thickness_m),
+    const parts = [(action === "remove" && gone[element]) || nouns[action], kind && `is ${kinds[kind] ?? (kind === "column" ? "a column" : kind)}`, line && !action && "moved", cm("thickness", thickness_m),
       cm("width", width_m), cm("sill", sill_m), cm("top", lintel_m), name && `is ${name}`, number && `has number ${number}`];
     const said = parts.filter(Boolean).join(", ");
     const subject = name || number ? where : words;

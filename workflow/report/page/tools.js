@@ -9,11 +9,17 @@ const tools = (() => {
     for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
     return made;
   };
-  const walls = [...plan.querySelectorAll('.pick[data-element^="wall "]')].map(({ dataset }) => edits.lineOf(dataset.element));
+  const beyond = 0.45; // metres that an opening may reach beyond its wall, a little less than when it is carried out
+  const drawn = [...plan.querySelectorAll('.pick[data-element^="wall "]')].map(({ dataset }) => edits.lineOf(dataset.element));
+  let walls = drawn;
+  edits.onChange(() => {
+    walls = [...drawn, ...edits.fresh().filter(({ element, line }) => element === "wall" && line).map(({ line }) => line)];
+  });
   const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
-  const onLine = (at, [a, b]) => {
+  const onLine = (at, [a, b], over = 0) => {
     const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    const t = Math.max(0, Math.min(1, ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
+    const more = over / (Math.hypot(dx, dy) || 1);
+    const t = Math.max(-more, Math.min(1 + more, ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy || 1)));
     return [a[0] + t * dx, a[1] + t * dy];
   };
   const closest = (at, places) => places.reduce((best, place) => (far(at, place) < far(at, best) ? place : best), places[0]);
@@ -40,7 +46,10 @@ const tools = (() => {
     }
     return far(at, beside) < reach ? beside : at;
   }
-  const hostOf = (at) => edits.nearest("wall", at);
+  function hostOf(at) {
+    const line = walls.reduce((best, each) => (edits.distance(at, each) < edits.distance(at, best) ? each : best), walls[0]);
+    return line && edits.distance(at, line) <= 0.5 ? line : undefined;
+  }
 
   let tool = null; // what is drawn, what becomes of it
   let from = null;
@@ -77,7 +86,7 @@ const tools = (() => {
   // an opening lies on its wall, everything else where it snaps to
   function settle(at) {
     const host = tool.name === "opening" && hostOf(from ?? at);
-    return host ? onLine(at, edits.lineOf(host)) : tool.name === "tape" ? at : snapped(at, from);
+    return host ? onLine(at, host, beyond) : tool.name === "tape" ? at : snapped(at, from);
   }
   function put(at) {
     if (tool.name === "opening" && !from && !hostOf(at)) return say("An opening lies in a wall: tap on one", 3);
@@ -86,7 +95,7 @@ const tools = (() => {
       from = place;
       return show(place);
     }
-    if (far(from, place) < 0.05) return say("Too short: tap where it ends", 3);
+    if (far(from, place) < 0.05) return say(tool.name === "opening" ? "Too short: tap where it ends, on this wall" : "Too short: tap where it ends", 3);
     const { act } = tool;
     const line = [from, place];
     stop();
