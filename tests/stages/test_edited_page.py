@@ -150,14 +150,15 @@ def test_an_opening_is_drawn_in_the_wall_that_is_tapped(page):
 
 
 def test_an_opening_is_drawn_in_a_wall_that_was_just_drawn(page, tmp_path):
-    page.run("edits.add({element: 'wall', action: 'add', line: [[2, 1], [2, 2.5]]})")
+    page.run("edits.add({element: 'wall', action: 'add', line: [[2, 0.5], [2, 1.5]]})")
+    page.run("edits.add({element: 'wall', action: 'add', line: [[2, 1.5], [2, 2.5]]})")
     press(page, "Draw")
     press(page, "Window", "#draw")
     for y_m in (1.5, 2.2):
         click(page, on_screen(page, 2.05, y_m))
-    wall, window = entries(page)
+    *walls, window = entries(page)
     assert ends_of(window) == pytest.approx([2, 1.5, 2, 2.2], abs=0.02)
-    plan = corrected(write_plan(tmp_path), wall, window)
+    plan = corrected(write_plan(tmp_path), *walls, window)
     assert plan.openings["wall"][-1] == plan.walls["wall"][-1]
 
 

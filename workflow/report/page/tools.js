@@ -46,9 +46,11 @@ const tools = (() => {
     }
     return far(at, beside) < reach ? beside : at;
   }
-  function hostOf(at) {
-    const line = walls.reduce((best, each) => (edits.distance(at, each) < edits.distance(at, best) ? each : best), walls[0]);
-    return line && edits.distance(at, line) <= 0.5 ? line : undefined;
+  // of two walls in a line that of both ends
+  function hostOf(...places) {
+    const off = (line) => places.reduce((sum, place) => sum + edits.distance(place, line), 0);
+    const line = walls.reduce((best, each) => (off(each) < off(best) ? each : best), walls[0]);
+    return line && edits.distance(places[0], line) <= 0.5 ? line : undefined;
   }
 
   let tool = null; // what is drawn, what becomes of it
@@ -85,7 +87,7 @@ const tools = (() => {
   }
   // an opening lies on its wall, everything else where it snaps to
   function settle(at) {
-    const host = tool.name === "opening" && hostOf(from ?? at);
+    const host = tool.name === "opening" && (from ? hostOf(from, at) : hostOf(at));
     return host ? onLine(at, host, beyond) : tool.name === "tape" ? at : snapped(at, from);
   }
   function put(at) {
