@@ -6,7 +6,12 @@ import os
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.corrections_file import find_beside, read_corrections, read_entries
+from scanplan.project.corrections_file import (
+    find_beside,
+    place_corrections,
+    read_corrections,
+    read_entries,
+)
 
 GOOD = """\
 corrections:
@@ -215,3 +220,15 @@ def test_what_is_no_file_is_told(tmp_path, name):
     os.mkfifo(path)
     with pytest.raises(StageError, match=f"{name}: is a pipe, expected a file"):
         find_beside(tmp_path / "corrections.yaml")
+
+
+def test_corrections_lie_beside_the_recording(tmp_path):
+    bag = tmp_path / "my.bag"
+    bag.touch()
+    beside = place_corrections("my", bag, is_simulated=False)
+    assert beside == tmp_path / "my.bag.corrections.yaml"
+    assert find_beside(written(tmp_path, GOOD, beside.name)) == beside
+    folder = place_corrections("floor", tmp_path, is_simulated=False)
+    assert folder == tmp_path / "corrections.yaml"
+    simulated = place_corrections("demo", None, is_simulated=True)
+    assert simulated.as_posix() == "results/demo/survey/corrections.yaml"
