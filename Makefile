@@ -24,7 +24,7 @@ $(if $(strip $(TWICE)),$(error ARGS: $(strip $(TWICE)) would take the place of D
 # every stage is a process, which would compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run compare quick test tests test-slurm lint style types faults audit bench figures pictures settings
+.PHONY: help run compare edit quick test tests test-slurm lint style types faults audit bench figures pictures settings
 .PHONY: environment kiss-icp clean
 .DEFAULT_GOAL := run
 
@@ -44,6 +44,10 @@ run: environment ## the demo: simulate an office, make its plan
 
 compare: TARGET = comparison
 compare: run ## the same with all orderings and extractors beside the plan's own
+
+edit: environment ## the demo's report as an editor that carries out what is corrected; ARGS=results/X another one's
+	@PYTHONPATH="$(CURDIR)/scripts/startup:$(CURDIR)/scripts$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python -P -c \
+	    'import sys; from scanplan.project.run.command import main; sys.exit(main())' open --cores $(CORES) $(or $(ARGS),results/demo)
 
 quick: environment style ## lint and the tests of what changed since main, under 90 seconds
 	@changed=$$($(BIN)/python tests/changed_tests.py python); \

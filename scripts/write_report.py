@@ -15,7 +15,7 @@ from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.stage.run_times import read_job_costs
-from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.store import atomic, lineage, registered_scans, schemas, tables
 from scanplan.types import Columns, FilePath, FloatArray, Settings
 
 _FAILED = "the stage that works it out failed"
@@ -73,6 +73,7 @@ def write_report(
             for storey, dataset in storeys
         ],
         corrections=_read_entries(files["corrections"]),
+        survey=corrections_file.name_survey(name, lineage.read_made_of(files["poses"])),
         version=f"Made by {code_files.state_version()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}

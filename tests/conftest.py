@@ -9,6 +9,8 @@ import hypothesis
 import pytest
 from shapely.geometry.base import BaseGeometry
 
+from helpers import browser
+
 # a shared machine is slow at times: how long an example takes says nothing of the code
 hypothesis.settings.register_profile(
     "steady", deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
@@ -54,3 +56,10 @@ def recordings_dir():
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Run the workflow's tests first: the short ones fill what is left at the end of each core."""
     items.sort(key=lambda item: item.get_closest_marker("workflow") is None)
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory):
+    """A headless browser for the tests of a file."""
+    with browser.Page(tmp_path_factory.mktemp("browser")) as page:
+        yield page

@@ -10,9 +10,14 @@ from helpers.wall_making import walls as wall_table
 from scanplan.plan import floorplan
 from scanplan.report.facts import PredictionFacts, VisitFacts
 from scanplan.store import schemas, tables
+from write_report import write_report
 
 PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
-PAGE_FILES = ("page.html.j2", "tables.html.j2", "page.css", "page.js", "elements.js")
+PAGE_FILES = (
+    *("page.html.j2", "tables.html.j2", "page.css", "edit.css"),
+    *("page.js", "edits.js", "drawn_edits.js", "tools.js", "choices.js"),
+    *("elements.js", "walk.js", "save.js"),
+)
 SETTINGS = {
     "selection": {"stop": {"n_scans": 3, "area_share": None}},
     "plan": {
@@ -240,3 +245,17 @@ def files(folder):
         "recordings": [folder / "survey.bag"],
         "results": [paths["faces"], paths["walls"], folder / "plan.svg", folder / "plan.dxf"],
     }
+
+
+def written(folder, files, name="office <two> rooms", output="report.html", storeys=()):
+    """The report of such files."""
+    write_report(
+        files,
+        folder / output,
+        name=name,
+        settings=SETTINGS,
+        run_times=sorted((folder / "benchmarks").glob("*.tsv")),
+        short=folder / "summary.txt",
+        storeys=storeys,
+    )
+    return folder / output

@@ -5,40 +5,17 @@ import json
 import numpy as np
 import pytest
 import shapely
-import yaml
 
-from correct_plan import correct_plan
 from helpers import floorplan_making
+from helpers.correcting import MADE, corrected, faces_of, write_plan
 from scanplan.errors import StageError
-from scanplan.plan import floorplan, floorplan_files, planning
+from scanplan.plan import planning
 from scanplan.store import tables
-
-MADE = {name: getattr(floorplan_making, name) for name in planning.TABLES}
 
 
 @pytest.fixture
 def plan(tmp_path):
-    paths = {name: tmp_path / f"{name}.parquet" for name in planning.TABLES}
-    notes = {"floor_z_m": "0.0", "ceiling_z_m": "2.5", "other": "kept"}
-    for name, schema in planning.TABLES.items():
-        own = notes if name == "free" else None
-        tables.write_table(paths[name], schema, MADE[name](), notes=own)
-    return paths
-
-
-def corrected(plan, *entries):
-    """The corrected plan; `element: wall` and the like are given as keywords."""
-    folder = plan["walls"].parent
-    path = folder / "corrections.yaml"
-    path.write_text(yaml.safe_dump({"corrections": list(entries)}))
-    outputs = {name: folder / f"corrected/{name}.parquet" for name in planning.TABLES}
-    correct_plan(path, plan, outputs)
-    return floorplan_files.read_floorplan(outputs, "office")
-
-
-def faces_of(plan, wall):
-    """Lines of the faces of a wall, (n, 2, 2)."""
-    return floorplan.centrelines_m(plan.faces)[plan.faces["wall"] == wall]
+    return write_plan(tmp_path)
 
 
 def test_no_entry_changes_nothing(plan):

@@ -4,31 +4,17 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
-from helpers import browser, floorplan_making, report_making
+from helpers import floorplan_making, report_making
+from helpers.pages import click, in_sight, middle_of, needs_browser, text_of
 from scanplan.errors import StageError
-from scanplan.project import corrections_file
 from scanplan.recordings.motion import pose_kind
 from scanplan.store import schemas, tables
-from write_report import write_report
 
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    return written(folder, report_making.files(folder))
-
-
-def written(folder, files, name="office <two> rooms", output="report.html", storeys=()):
-    write_report(
-        files,
-        folder / output,
-        name=name,
-        settings=report_making.SETTINGS,
-        run_times=sorted((folder / "benchmarks").glob("*.tsv")),
-        short=folder / "summary.txt",
-        storeys=storeys,
-    )
-    return folder / output
+    return report_making.written(folder, report_making.files(folder))
 
 
 class Tables(HTMLParser):
@@ -81,7 +67,7 @@ def test_of_odometry_the_figures_after_one_motion_come_first(tmp_path):
     files = report_making.files(tmp_path)
     notes = {pose_kind.NOTE: pose_kind.ODOMETRY, schemas.N_RECORDED: "23"}
     tables.write_table(files["poses"], schemas.POSES, report_making.poses(), notes=notes)
-    text = written(tmp_path, files).read_text()
+    text = report_making.written(tmp_path, files).read_text()
     assert Tables(text).rows["truth"][0][1:3] == ["aligned", "registered"]
 
 
@@ -114,21 +100,21 @@ def test_its_links_lead_to_the_files_beside_it(report):
 
 def test_the_reports_of_a_building_lead_to_each_other(tmp_path):
     storeys = [("Ground", "floor_0"), ("First", "floor_1")]
-    made = written(tmp_path, report_making.files(tmp_path), name="floor_1", storeys=storeys)
+    made = report_making.written(
+        tmp_path, report_making.files(tmp_path), name="floor_1", storeys=storeys
+    )
     switch = made.read_text().partition('<nav id="storeys"')[2].partition("</nav>")[0]
     assert re.findall(r'href="([^"]*)"( aria-current="page")?>([^<]*)<', switch) == [
         ("../floor_0/report.html", "", "Ground"),
         ("../floor_1/report.html", ' aria-current="page"', "First"),
     ]
-    alone = written(tmp_path, report_making.files(tmp_path))
+    alone = report_making.written(tmp_path, report_making.files(tmp_path))
     assert 'id="storeys"' not in alone.read_text()
 
 
 def test_what_to_verify_comes_before_all_tables(report):
     text = report.read_text()
-    listed = re.findall(
-        r'data-show="([^"]*)">[^<]*<span class="note"><b>([^<]*)</b> ([^<]*)<', text
-    )
+    listed = re.findall(r'data-show="([^"]*)"><.*?<span class="note"><b>([^<]*)</b> ([^<]*)<', text)
     assert listed == [("wall 2", "Wall 2", "few points")]
     assert text.index("data-show=") < text.index("<table")
 
@@ -143,7 +129,10 @@ def test_it_holds_all_it_needs(report):
 
 
 def test_the_same_input_gives_the_same_bytes(report, tmp_path):
-    assert written(tmp_path, report_making.files(tmp_path)).read_bytes() == report.read_bytes()
+    assert (
+        report_making.written(tmp_path, report_making.files(tmp_path)).read_bytes()
+        == report.read_bytes()
+    )
 
 
 def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
@@ -160,7 +149,9 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     tables.write_table(files["evidence"], schemas.EVIDENCE, nobody, allow_empty=True)
     (tmp_path / "benchmarks/build_hulls.tsv").write_text("")
     (tmp_path / "benchmarks/draw_area.tsv").unlink()
-    found = Tables(written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()).rows
+    found = Tables(
+        report_making.written(tmp_path, files | {"evaluation": [], "figures": []}).read_text()
+    ).rows
     assert len(found["walls"]) == 1 and len(found["stages"]) == 1
 
 
@@ -168,7 +159,7 @@ def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
     files = report_making.files(tmp_path)
     nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
     tables.write_table(files["selection"], schemas.SELECTION, report_making.selection() | nothing)
-    assert "no scan has any wall shown" in written(tmp_path, files).read_text()
+    assert "no scan has any wall shown" in report_making.written(tmp_path, files).read_text()
 
 
 def test_a_selection_of_another_run_is_told(tmp_path):
@@ -176,34 +167,16 @@ def test_a_selection_of_another_run_is_told(tmp_path):
     selection = report_making.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
     tables.write_table(files["selection"], schemas.SELECTION, selection)
     with pytest.raises(StageError, match="no pose of scan 7 of selection"):
-        written(tmp_path, files)
+        report_making.written(tmp_path, files)
 
 
 CTRL = 2  # of DevTools' modifier keys
-needs_browser = pytest.mark.skipif(
-    browser.find() is None,
-    reason="no Chromium on the path (Debian: apt-get install chromium; or name one in CHROMIUM)",
-)
-
-
-@pytest.fixture(scope="module")
-def chromium(tmp_path_factory):
-    with browser.Page(tmp_path_factory.mktemp("browser")) as page:
-        yield page
 
 
 @pytest.fixture
 def page(report, chromium):
     yield chromium.open(report.as_uri())
     assert chromium.complaints == []
-
-
-def in_sight(page, selector):
-    """How many of the elements a person could see."""
-    return page.run(
-        f"[...document.querySelectorAll('{selector}')].filter(e => e.getClientRects().length"
-        " && e.getBoundingClientRect().width + e.getBoundingClientRect().height > 0).length"
-    )
 
 
 def slide(page, k):
@@ -302,22 +275,6 @@ def test_a_table_is_sorted_by_any_column_and_a_row_shows_its_wall(page):
     assert page.run(shown) == ["wall 5"]
 
 
-def middle_of(page, selector):
-    return page.run(
-        "(r => [r.x + r.width / 2, r.y + r.height / 2])"
-        f"(document.querySelector('{selector}').getBoundingClientRect())"
-    )
-
-
-def click(page, place):
-    page.mouse("mousePressed", *place, button="left", clickCount=1)
-    page.mouse("mouseReleased", *place, button="left", clickCount=1)
-
-
-def text_of(page, selector):
-    return page.run(f"document.querySelector('{selector}').innerText")
-
-
 @needs_browser
 def test_a_click_says_what_was_clicked_beside_it_and_marks_its_row(page):
     place = middle_of(page, '#plan .pick[data-element="wall 3"]')
@@ -374,41 +331,6 @@ def test_the_wheel_over_the_plan_scrolls_the_page(page):
     page.mouse("mouseWheel", 500, 400, deltaX=0, deltaY=200)
     page.run("new Promise(done => setTimeout(done, 300))")
     assert page.run("scrollY") > 100
-
-
-@needs_browser
-def test_corrections_made_in_the_page_are_a_file_that_the_next_run_reads(page, tmp_path):
-    page.ask("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
-    act = "[...document.querySelectorAll('#card button')].find(b => b.textContent === '{}').click()"
-    page.run("document.querySelector('tr[data-element=\"wall 2\"]').click()")
-    page.run(act.format("remove"))
-    page.run("document.querySelector('tr[data-element=\"opening 1\"]').click()")
-    page.run(act.format("is a window"))
-    page.run("document.querySelector('tr[data-element=\"room 1\"]').click()")
-    page.run("document.querySelector('#card input').value = 'Küche \"2\"'")
-    page.run("document.querySelector('#card form').requestSubmit()")
-    page.run("document.getElementById('download').click()")
-    path = tmp_path / "corrections.yaml"
-    for _ in range(100):
-        if path.exists():
-            break
-        page.run("new Promise(done => setTimeout(done, 50))")
-    wall, opening, room = corrections_file.read_corrections(path)
-    assert (wall.action, wall.at_m) == ("remove", pytest.approx((5.575, 3.1)))
-    assert (opening.kind, opening.at_m) == ("window", pytest.approx((4.05, 1.45)))
-    assert (room.name, room.at_m) == ('Küche "2"', pytest.approx((5.6, 1.5)))
-
-
-@needs_browser
-def test_corrections_that_a_plan_has_are_listed(chromium, tmp_path):
-    files = report_making.files(tmp_path)
-    files["corrections"] = tmp_path / "corrections.yaml"
-    files["corrections"].write_text(
-        "corrections:\n- {element: room, at: [1, 2], name: '</script> & co'}\n"
-    )
-    page = chromium.open(written(tmp_path, files).as_uri())
-    assert "room is </script> & co at 1,2" in text_of(page, "#corrections li")
-    assert page.complaints == []
 
 
 SIZES = [(1600, 1000), (1280, 800), (390, 844), (360, 640)]
@@ -482,7 +404,7 @@ def test_the_key_names_each_kind_of_opening_that_is_drawn_as_it_is_drawn(tmp_pat
     kinds = np.array(["door", "gap", "glass"], object)
     openings = floorplan_making.openings() | {"type": kinds}
     tables.write_table(files["openings"], schemas.OPENINGS, openings)
-    text = written(tmp_path, files).read_text()
+    text = report_making.written(tmp_path, files).read_text()
     key = text.partition('<p class="key">')[2].partition("</p>")[0]
     named = re.findall(r'swatch (door|gap|glass|passage|window)"></span>([^<]*)', key)
     assert [(kind, words.strip()) for kind, words in named] == [

@@ -1,6 +1,7 @@
 """The command of an installed release, and the command of Snakemake that it stands for."""
 
 import os
+import re
 import subprocess
 import sys
 import webbrowser
@@ -8,9 +9,11 @@ import webbrowser
 import pytest
 from snakemake.cli import get_argument_parser
 
+from scanplan import interrupts, surroundings
 from scanplan.errors import StageError
 from scanplan.project.code_files import state_version
 from scanplan.project.run import command
+from scanplan.project.run.edit_server import EditServer
 
 MAIN = "import sys; from scanplan.project.run.command import main; sys.exit(main())"
 
@@ -114,16 +117,22 @@ def test_a_run_takes_the_place_of_the_command_and_says_which_it_is(tmp_path, pro
     assert second == f"{os.getpid()} {tmp_path} {' '.join(expected)}"
 
 
-@pytest.mark.parametrize("opens", [True, False])
-def test_the_report_is_opened_or_named_where_no_browser_can(tmp_path, monkeypatch, opens):
+def test_a_report_is_opened_at_an_address_of_this_computer_alone(tmp_path, monkeypatch, capsys):
+    results = tmp_path / "results/floor"
+    results.mkdir(parents=True)
+    (results / "report.html").touch()
+    (results / "source.txt").write_text("my.bag\n")
+    (tmp_path / "my.bag").touch()
     seen = []
-    monkeypatch.setattr(webbrowser, "open", lambda page: seen.append(page) or opens)
-    page = tmp_path / "a floor/report.html"
-    page.parent.mkdir()
-    page.touch()
-    if opens:
-        command.open_report(page.parent)
-    else:
-        with pytest.raises(StageError, match=r"a floor/report\.html: no browser"):
-            command.open_report(page.parent)
-    assert seen == [page.as_uri()]
+    monkeypatch.setattr(webbrowser, "open", lambda page: seen.append(page))
+    monkeypatch.setattr(EditServer, "serve_forever", lambda _: None)
+    monkeypatch.setattr(interrupts, "begin_work", lambda: None)
+    monkeypatch.setattr(surroundings, "mend_surroundings", lambda: None)
+    monkeypatch.setattr(interrupts, "end_on_interrupt", lambda: None)
+    monkeypatch.setattr(os, "environ", dict(os.environ))
+    assert command.main(["open", str(results)]) == 0
+    (address,) = seen
+    assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{32}/report\.html", address)
+    said = capsys.readouterr().out
+    assert address in said and f"{tmp_path}/my.bag.corrections.yaml" in said
+    assert "no browser could be started; open the address" in said

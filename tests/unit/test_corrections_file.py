@@ -6,7 +6,12 @@ import os
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.corrections_file import find_corrections, read_corrections, read_entries
+from scanplan.project.corrections_file import (
+    find_beside,
+    place_corrections,
+    read_corrections,
+    read_entries,
+)
 
 GOOD = """\
 corrections:
@@ -36,6 +41,21 @@ def test_entries_are_read_as_they_stand(tmp_path):
     assert (point.world_m, point.crs) == ((500000.0, 5400000.0), "EPSG:25832")
 
 
+def test_sizes_places_and_who_said_it_are_read(tmp_path):
+    text = """\
+survey: office 0123
+corrections:
+- {element: wall, at: [1, 2], line: [[0, 0], [4, 0]], thickness_m: 0.36}
+- {element: opening, at: [3, 0], width_m: 0.9, lintel_m: 2.1, when: "2026-03-01T09:30:00Z", by: A}
+- {element: room, action: merge, at: [1, 2], with: [5, 2]}
+- {element: room, at: [1, 2], number: "2.14"}
+"""
+    wall, opening, merged, room = read_corrections(written(tmp_path, text))
+    assert (wall.action, wall.at_m, wall.line_m) == ("change", (1, 2), ((0, 0), (4, 0)))
+    assert (wall.thickness_m, opening.width_m, opening.lintel_m) == (0.36, 0.9, 2.1)
+    assert (merged.with_m, room.number, room.name) == ((5.0, 2.0), "2.14", "")
+
+
 def test_geojson_says_the_same(tmp_path):
     geometries = {
         "at": lambda place: {"type": "Point", "coordinates": place},
@@ -63,7 +83,14 @@ def test_geojson_says_the_same(tmp_path):
             "element is 'wal', expected one of check_point",
         ),
         ("{element: wall, at: [1, 2], action: paint}", "action of a wall is 'paint', expected"),
-        ("{element: wall, at: [1, 2]}", "action of a wall is 'change', expected one of keep"),
+        ("{element: wall, at: [1, 2]}", "has no kind or line or thickness_m; to change a wall"),
+        ("{element: wall, at: [1, 2], kind: door}", "kind is 'door', expected one of furniture"),
+        ("{element: opening, at: [1, 2], width_m: 0}", "width_m is 0, expected 0.05 to 1000 m"),
+        ("{element: opening, at: [1, 2], sill_m: 2, lintel_m: 1.5}", "sill_m is not below"),
+        ("{element: room, action: merge, at: [1, 2]}", "has no with; to merge a room takes"),
+        ("{element: room, action: split, at: [1, 2]}", "has at; to split a room takes line"),
+        ("{element: wall, at: [1, 2], action: keep, when: noon}", "when is 'noon', expected a"),
+        ("{element: wall, at: [1, 2], action: keep, by: 5}", "by is 5, expected text of 1 to 80"),
         ("{element: wall, at: [1], action: keep}", "at is [1], expected two numbers"),
         ("{element: wall, at: [1, .inf], action: keep}", "expected two numbers"),
         ("{element: wall, at: [1, yes], action: keep}", "expected two numbers"),
@@ -146,12 +173,12 @@ def test_reference_points_in_two_systems_are_told(tmp_path):
 
 
 def test_one_file_of_corrections_is_used(tmp_path):
-    assert find_corrections(tmp_path) is None
+    assert find_beside(tmp_path / "corrections.yaml") is None
     path = written(tmp_path, GOOD)
-    assert find_corrections(tmp_path) == str(path)
+    assert find_beside(tmp_path / "corrections.yaml") == path
     written(tmp_path, "{}", "corrections.geojson")
     with pytest.raises(StageError, match="keep one of the two"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
 
 
 @pytest.mark.parametrize("geometry", ['"Point"', "[1, 2]", "5", "null", "true"])
@@ -184,12 +211,24 @@ def test_what_is_no_file_is_told(tmp_path, name):
     path = tmp_path / name
     path.symlink_to(tmp_path / "nowhere")
     with pytest.raises(StageError, match=f"{name}: is a link that leads nowhere"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
     path.unlink()
     path.mkdir()
     with pytest.raises(StageError, match=f"{name}: is a folder, expected a file"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
     path.rmdir()
     os.mkfifo(path)
     with pytest.raises(StageError, match=f"{name}: is a pipe, expected a file"):
-        find_corrections(tmp_path)
+        find_beside(tmp_path / "corrections.yaml")
+
+
+def test_corrections_lie_beside_the_recording(tmp_path):
+    bag = tmp_path / "my.bag"
+    bag.touch()
+    beside = place_corrections("my", bag, is_simulated=False)
+    assert beside == tmp_path / "my.bag.corrections.yaml"
+    assert find_beside(written(tmp_path, GOOD, beside.name)) == beside
+    folder = place_corrections("floor", tmp_path, is_simulated=False)
+    assert folder == tmp_path / "corrections.yaml"
+    simulated = place_corrections("demo", None, is_simulated=True)
+    assert simulated.as_posix() == "results/demo/survey/corrections.yaml"

@@ -1,11 +1,14 @@
 """A folder with the chosen scans of another survey: its plan is that plan, and can be corrected."""
 
+import json
 import shutil
+import sys
 
 import numpy as np
 import pytest
 
 from helpers.project_copy import TINY, Project
+from scanplan.project.run.edit_session import EditSession
 from scanplan.store import schemas, tables
 
 pytestmark = pytest.mark.workflow
@@ -47,6 +50,18 @@ def test_the_plan_of_the_selected_bag_is_the_plan(project):
                 np.testing.assert_allclose(after[column], before[column], atol=0.05)
 
 
+def save_on_the_page(project, entry):
+    """Save a correction as the report's page does, and wait for the run."""
+    session = EditSession(
+        project.folder / "results/floor",
+        [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "rules"],
+    )
+    survey = session._read_page()["survey"]
+    session.save({"survey": survey, "revision": "", "entries": [entry]})
+    session._listener.join()
+    assert "error" not in session.tell_run(), session.tell_run()
+
+
 def test_corrections_are_kept_and_rerun_what_reads_the_plan_alone(project):
     assert project.would_run(*DATASET) == set()
     results = project.folder / "results/floor"
@@ -55,8 +70,9 @@ def test_corrections_are_kept_and_rerun_what_reads_the_plan_alone(project):
     path = project.folder / "floor/corrections.yaml"
     path.write_text(f"corrections:\n- {{element: room, at: {place}, name: Foyer}}\n")
     assert project.would_run(*DATASET) == READERS | {"correct_plan"}
-    made = project.run(*DATASET)
-    assert made.returncode == 0, made.stderr
+    path.unlink()
+    save_on_the_page(project, {"element": "room", "at": json.loads(place), "name": "Foyer"})
+    assert path.is_file()
     assert "Foyer" in (results / "report.html").read_text()
     assert "Foyer" in (results / "plan/plan.geojson").read_text()
     assert project.would_run(*DATASET) == set()

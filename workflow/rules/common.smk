@@ -64,6 +64,7 @@ from scanplan.project.provenance import (
 from scanplan.project.run import optional_stages
 from scanplan.project.run.foreign_settings import keep_figures_ours
 from scanplan.project.run.terminal import tell
+from scanplan.project.run_note import write_note
 from scanplan.project.settings import (
     Layer,
     locate_fault,

@@ -208,6 +208,11 @@ onsuccess:
     if is_whole() and not LACKING and comparison_is_up_to_date():
         for name, dataset in GIVEN.items():
             or_end(end_results, name, dataset.source)
+    if is_whole() and has_files_here():
+        storeys = BUILDING.storeys if BUILDING else ()
+        together = [GIVEN[storey.dataset].source for storey in storeys]
+        for name, dataset in GIVEN.items():
+            or_end(write_note, name, dataset.source, together, KNOWN["given"])
     tell_results()
     tell_overview()
     if optional_stages.read_left_out():

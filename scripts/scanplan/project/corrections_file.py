@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
-from scanplan.project import reference_points, reference_systems, texts, user_file
+from scanplan.project import correction_values, reference_points, user_file
 from scanplan.project.corrections_geojson import read_features
 from scanplan.project.yaml_file import read_yaml
 
@@ -22,30 +22,43 @@ if TYPE_CHECKING:
 
 CORRECTIONS_FILES = ("corrections.yaml", "corrections.geojson")
 _KEYS = {
-    ("wall", "keep"): ("at",),
-    ("wall", "remove"): ("at",),
-    ("wall", "add"): ("line", "thickness_m"),
-    ("opening", "keep"): ("at",),
-    ("opening", "remove"): ("at",),
-    ("opening", "change"): ("at", "kind"),
-    ("opening", "add"): ("line", "kind"),
-    ("room", "keep"): ("at",),
-    ("room", "remove"): ("at",),
-    ("room", "change"): ("at", "name"),
-    ("reference_point", "add"): ("at", "world", "crs"),
-    ("check_point", "add"): ("at", "world", "crs"),
+    ("wall", "keep"): (("at",), ()),
+    ("wall", "remove"): (("at",), ()),
+    ("wall", "add"): (("line",), ("thickness_m",)),
+    ("wall", "change"): (("at",), ("kind", "line", "thickness_m")),
+    ("face", "keep"): (("at",), ()),
+    ("face", "remove"): (("at",), ()),
+    ("opening", "keep"): (("at",), ()),
+    ("opening", "remove"): (("at",), ()),
+    ("opening", "change"): (("at",), ("kind", "line", "width_m", "sill_m", "lintel_m")),
+    ("opening", "add"): (("line", "kind"), ("sill_m", "lintel_m")),
+    ("room", "keep"): (("at",), ()),
+    ("room", "remove"): (("at",), ()),
+    ("room", "change"): (("at",), ("name", "number")),
+    ("room", "split"): (("line",), ()),
+    ("room", "merge"): (("at", "with"), ()),
+    ("reference_point", "add"): (("at", "world", "crs"), ()),
+    ("check_point", "add"): (("at", "world", "crs"), ()),
 }
-"""What may be done to an element, and the keys of such an entry."""
+"""What may be done to an element: the keys that such an entry has, and those that it may have; of a
+change it has one at least."""
+_OF_ANY = ("when", "by")
+"""Keys of any entry: the moment at which it was said, and who said it."""
 POINTS = ("reference_point", "check_point")
 """What says where the plan lies, and what is held against that: no elements of it."""
-_OPTIONAL = ("thickness_m",)
-_KINDS = ("door", "window", "passage")
-_THICKNESS_M = (0.01, 3.0)
-"""Of a wall: from a sheet of glass to a fortress."""
-_LENGTH_M = (0.05, 1000.0)
-"""Of a wall or an opening: from a pier beside a door to the longest halls there are."""
-_FARTHEST_M = 1e8
-"""Of a place: all projected systems of the Earth lie within, with a zone before the easting."""
+OUTLINES = ("split", "merge")
+"""What is done to the outlines of rooms, before anything is said of the rooms that it leaves."""
+_KINDS = {
+    "wall": ("furniture", "column"),
+    "opening": ("door", "window", "passage", "glass"),
+}
+"""What a person may call an opening, and what is drawn as a wall."""
+_PLACES = ("at", "line", "with", "world")
+"""Keys of places, in metres."""
+_DIGITS = 12
+"""Of a digest of recordings: no two surveys that a person has are of the same."""
+_SURVEY = "survey"
+"""Beside the entries: the survey whose plan they are of, by its name and a digest."""
 
 
 @dataclass(frozen=True)
@@ -57,17 +70,24 @@ class Correction:
     entry : str
         File and number of the entry, for messages.
     element : str
-        wall, opening, room, or one of `POINTS`.
+        wall, face, opening, room, or one of `POINTS`.
     action : str
-        keep, remove, add, or change (of an opening's kind, or a room's name).
+        keep, remove, add, change, or one of `OUTLINES`.
     at_m : (float, float)
-        A place in the map frame on the element; of what is added the middle of its line.
+        A place in the map frame on the element; of what is added, and of the line that parts a
+        room, the middle.
     line_m : two (float, float) or None
-        Ends of what is added.
-    kind, name : str
-        Of an opening and of a room.
+        Ends of what is added, of where an element is moved to, or of what parts a room.
+    kind : str
+        Of an opening, or what something is that is no wall.
+    name, number : str
+        Of a room.
     thickness_m : float or None
-        Of a wall that is added.
+        Of a wall.
+    width_m, sill_m, lintel_m : float or None
+        Of an opening; heights are above the floor.
+    with_m : (float, float) or None
+        A place in the other of two rooms that are one.
     world_m : tuple of float or None
         East and north of a reference or check point.
     crs : str
@@ -81,13 +101,46 @@ class Correction:
     line_m: tuple[tuple[float, float], tuple[float, float]] | None = None
     kind: str = ""
     name: str = ""
+    number: str = ""
     thickness_m: float | None = None
+    width_m: float | None = None
+    sill_m: float | None = None
+    lintel_m: float | None = None
+    with_m: tuple[float, float] | None = None
     world_m: tuple[float, float] | None = None
     crs: str = ""
 
 
-def find_corrections(folder: Path) -> str | None:
-    """Return the file of corrections in a dataset's folder, None without.
+def name_survey(name: str, made_of: str) -> str:
+    """Return what a file of corrections calls the survey whose plan it is of.
+
+    Parameters
+    ----------
+    made_of : str
+        Digest of its recordings, empty where it is not known.
+    """
+    return f"{name} {made_of[:_DIGITS]}".strip()
+
+
+def place_corrections(name: str, path: FilePath | None, *, is_simulated: bool) -> Path:
+    """Return where corrections of a dataset are looked for, and written: beside its recording.
+
+    Parameters
+    ----------
+    name : str
+        Of its folder below results/, where the recording of a simulated one lies.
+    path : path-like or None
+        Its folder, or its only recording; the demo if None.
+    """
+    if is_simulated or path is None:
+        return Path("results", name, "survey", CORRECTIONS_FILES[0])
+    if Path(path).is_dir():
+        return Path(path, CORRECTIONS_FILES[0])
+    return Path(f"{path}.{CORRECTIONS_FILES[0]}")
+
+
+def find_beside(place: Path) -> Path | None:
+    """Return the file of corrections at a place, or that of GeoJSON beside it; None without.
 
     Raises
     ------
@@ -95,11 +148,11 @@ def find_corrections(folder: Path) -> str | None:
         If there are two, or one is no file.
     """
     remedy = "write the corrections there, or remove it"
-    named = [user_file.find_file(folder / name, remedy) for name in CORRECTIONS_FILES]
-    found = [path for path in named if path is not None]
+    files = [place.with_suffix(Path(name).suffix) for name in CORRECTIONS_FILES]
+    found = [file for file in files if user_file.find_file(file, remedy) is not None]
     if len(found) > 1:
         raise StageError(f"{found[0]}: {found[1].name} lies beside it; keep one of the two")
-    return str(found[0]) if found else None
+    return found[0] if found else None
 
 
 def read_entries(path: FilePath) -> list[dict[str, Any]]:
@@ -114,7 +167,7 @@ def read_entries(path: FilePath) -> list[dict[str, Any]]:
         return read_features(path)
     values = read_yaml(path)
     entries = values.get("corrections")
-    if set(values) != {"corrections"} or not isinstance(entries, list):
+    if set(values) - {_SURVEY} != {"corrections"} or not isinstance(entries, list):
         raise StageError(f"{path}: expected a list of entries under `corrections:` and no other")
     return entries
 
@@ -160,84 +213,35 @@ def _check_entry(entry: str, values: Any) -> Correction:
     if not isinstance(action, str) or (element, action) not in _KEYS:
         known = ", ".join(a for e, a in _KEYS if e == element)
         raise StageError(f"{entry}: action of a {element} is {action!r}, expected one of {known}")
-    keys = _KEYS[element, action]
-    unknown = sorted(map(str, set(values) - {"element", "action", *keys}))
-    missing = [key for key in keys if key not in values and key not in _OPTIONAL]
+    needed, possible = _KEYS[element, action]
+    keys = (*needed, *possible)
+    unknown = sorted(map(str, set(values) - {"element", "action", *keys, *_OF_ANY}))
+    missing = [key for key in needed if key not in values]
+    if action == "change" and not any(key in values for key in possible):
+        missing.append(" or ".join(possible))
     if unknown or missing:
         fault = f"has {', '.join(unknown)}" if unknown else f"has no {', '.join(missing)}"
         expected = ", ".join(keys)
         raise StageError(f"{entry}: {fault}; to {action} a {element} takes {expected}")
-    line_m = _check_line(entry, values["line"]) if "line" in keys else None
-    return Correction(
-        entry,
-        element,
-        action,
-        at_m=_middle(*line_m) if line_m else _check_place(entry, "at", values["at"]),
-        line_m=line_m,
-        kind=_check_kind(entry, values["kind"]) if "kind" in keys else "",
-        name=texts.check_text(f"{entry}: name", values["name"]) if "name" in keys else "",
-        thickness_m=_check_thickness(entry, values.get("thickness_m")),
-        world_m=_check_place(entry, "world", values["world"]) if "world" in keys else None,
-        crs=_check_crs(entry, values["crs"]) if "crs" in keys else "",
-    )
-
-
-def _check_place(entry: str, key: str, value: Any) -> tuple[float, float]:
-    if not (isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))):
-        expected = f"expected two numbers [x, y] in metres, up to {_FARTHEST_M:g}"
-        raise StageError(f"{entry}: {key} is {value!r}, {expected}")
-    return float(value[0]), float(value[1])
-
-
-def _is_number(value: Any) -> bool:
-    is_plain = isinstance(value, int | float) and not isinstance(value, bool)
-    # NaN is not, an integer may be too large for a float
-    return is_plain and abs(value) <= _FARTHEST_M
-
-
-def _check_line(entry: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
-    if not isinstance(value, list) or len(value) != 2:
-        raise StageError(f"{entry}: line is {value!r}, expected two places [[x, y], [x, y]]")
-    start_m, end_m = (_check_place(entry, "an end of line", place) for place in value)
-    length_m = math.dist(start_m, end_m)
-    shortest_m, longest_m = _LENGTH_M
-    if not shortest_m <= length_m <= longest_m:
-        limit = f"expected {shortest_m:g} to {longest_m:g} m"
-        raise StageError(f"{entry}: line is {length_m:g} m long, {limit}; give it in metres")
-    return start_m, end_m
-
-
-def _middle(start_m: tuple[float, float], end_m: tuple[float, float]) -> tuple[float, float]:
-    return (start_m[0] + end_m[0]) / 2, (start_m[1] + end_m[1]) / 2
-
-
-def _check_kind(entry: str, value: Any) -> str:
-    if value not in _KINDS:
-        raise StageError(f"{entry}: kind is {value!r}, expected one of {', '.join(_KINDS)}")
-    return value
-
-
-def _check_crs(entry: str, value: Any) -> str:
-    crs = texts.check_text(f"{entry}: crs", value)
-    if fault := reference_systems.find_fault(crs):
-        raise StageError(f"{entry}: crs {crs} {fault}")
-    return crs
-
-
-def _check_thickness(entry: str, value: Any) -> float | None:
-    if value is None:
-        return None
-    thinnest_m, thickest_m = _THICKNESS_M
-    if not _is_number(value) or not thinnest_m <= value <= thickest_m:
-        limit = f"expected {thinnest_m:g} to {thickest_m:g} m"
-        raise StageError(f"{entry}: thickness_m is {value!r}, {limit}; leave it out if not known")
-    return float(value)
+    read: dict[str, Any] = {
+        key: correction_values.check_kind(entry, values[key], _KINDS[element])
+        if key == "kind"
+        else correction_values.check_value(entry, key, values[key])
+        for key in (*keys, *_OF_ANY)
+        if key in values
+    }
+    if "at" not in read:
+        read["at"] = correction_values.find_middle(*read["line"])
+    if read.get("sill_m") is not None and read["sill_m"] >= (read.get("lintel_m") or math.inf):
+        raise StageError(f"{entry}: sill_m is not below lintel_m; heights are above the floor")
+    fields: dict[str, Any] = {f"{key}_m" if key in _PLACES else key: read[key] for key in read}
+    return Correction(entry, element, action, **{k: fields[k] for k in fields if k not in _OF_ANY})
 
 
 def _check_places(corrections: Iterable[Correction]) -> None:
     first: dict[tuple[Any, ...], Correction] = {}
     for correction in corrections:
-        place = (correction.element, correction.at_m)
+        place = (correction.element, correction.action in OUTLINES, correction.at_m)
         other = first.setdefault(place, correction)
         if other is not correction:
             fault = f"{other.entry.rpartition(': ')[2]} is of the same place"

@@ -205,7 +205,7 @@ def describe_dataset(
     else:
         recordings = tuple(dataset_files.find_files(path))
         notes = tuple(overlooked_files.list_overlooked(path))
-        corrections = _read_corrections(Path(path))
+        corrections = _read_corrections(name, path)
         truth = _truth_beside(Path(path))
         found = Dataset(name, settings, recordings, truth, notes=notes, corrections=corrections)
     named = settings["plan"]["design"]
@@ -228,12 +228,14 @@ def _read_own_settings(path: FilePath | None) -> list[Layer]:
     return read_own_layers(path)
 
 
-def _read_corrections(folder: Path) -> str | None:
+def _read_corrections(name: str, path: FilePath | None, *, simulated: bool = False) -> str | None:
     """Return the file of corrections; one with a mistake ends the run before it begins."""
-    path = corrections_file.find_corrections(folder)
-    if path is not None:
-        corrections_file.read_corrections(path)
-    return path
+    place = corrections_file.place_corrections(name, path, is_simulated=simulated)
+    found = corrections_file.find_beside(place)
+    if found is None:
+        return None
+    corrections_file.read_corrections(found)
+    return str(found)
 
 
 def _check_survey(path: FilePath | None, own: Sequence[Layer]) -> None:
@@ -265,6 +267,7 @@ def describe_simulated(name: str, settings: dict[str, Any], drawings: FilePath) 
         (files["recording"],),
         (files["truth"], files["true_poses"]),
         os.path.relpath(drawing) if drawing.is_file() else building,
+        corrections=_read_corrections(name, None, simulated=True),
     )
 
 

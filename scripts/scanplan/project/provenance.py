@@ -16,7 +16,8 @@ from scanplan.plain_types import FilePath
 from scanplan.store import atomic
 
 DEMO = "the simulated demo"
-_RECORD = "source.txt"
+RECORD = "source.txt"
+"""File that says what the results beside it were made of."""
 
 
 def identify_source(path: FilePath | None) -> str:
@@ -109,7 +110,7 @@ def remove_empty_folders(name: str) -> None:
 
 
 def _note_of(name: str) -> Path:
-    return Path("results", name, _RECORD)
+    return Path("results", name, RECORD)
 
 
 def _recorded_sources(name: str) -> list[str]:

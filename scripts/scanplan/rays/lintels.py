@@ -32,7 +32,6 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
 
     Parameters
     ----------
-    rays : ray_set.RaySet
     segments : dict of str to (n,) array
         `scan_id`, `x0_m`, `y0_m`, `x1_m`, `y1_m` of walls that those scans saw.
     track_m : (k, 2) float64

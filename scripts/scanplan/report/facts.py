@@ -119,6 +119,8 @@ class RunFacts:
         Of the building, from the lowest up; none where it is of none.
     corrections : list of dict
         Entries of the dataset's file of corrections, as they stand in it.
+    survey : str
+        Name of the dataset, and a digest of the recordings where it is known.
     version : str
     """
 
@@ -129,4 +131,5 @@ class RunFacts:
     results: Sequence[str]
     storeys: Sequence[Storey]
     corrections: Sequence[Mapping[str, object]]
+    survey: str
     version: str

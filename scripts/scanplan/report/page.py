@@ -1,6 +1,7 @@
 """The report of a dataset: one page of HTML that needs nothing beside it."""
 
 import base64
+import hashlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from scanplan.report import (
     page_tables,
     result_links,
     templates,
+    walk,
     wording,
 )
 from scanplan.report.facts import RunFacts, SurveyFacts
@@ -24,6 +26,7 @@ from scanplan.types import FloatArray, Settings
 from scanplan.validation import doubts, verdict
 
 _FOUND, _RIGHT = "visible_completeness_010m", "correctness_010m"
+_DIGITS = 12  # of a digest: no two plans of a survey have the same
 _CAPTIONS = {
     "scans": "Points of the registered scans from above, where each was taken, and the selected"
     " scans by rank.",
@@ -79,6 +82,8 @@ def report_page(
     curves = _curves(survey, of_plan, objective)
     n_scans = len(survey.selection["rank"])
     found = doubts.list_doubts(plan)
+    start_m = _find_start_m(survey)
+    drawn = _plan_svg(plan, survey, points, of_plan["merge"])
     return templates.render_template(
         sources,
         "page.html.j2",
@@ -97,13 +102,14 @@ def report_page(
         links=result_links.link_results(run.results),
         storeys=run.storeys,
         doubts=[
-            doubts.group_by_room(part) for part in (found[: doubts.MOST], found[doubts.MOST :])
+            walk.order_rooms(doubts.group_by_room(part), start_m)
+            for part in (found[: doubts.MOST], found[doubts.MOST :])
         ],
         n_more=len(found[doubts.MOST :]),
         n_doubts=len(found),
         nearly=doubts.list_nearly(plan),
         confidence=wording.confidence_note(plan),
-        plan=Markup(_plan_svg(plan, survey, points, of_plan["merge"])),
+        plan=Markup(drawn),
         opening_kinds=_list_opening_kinds(plan),
         visit=survey.visit.summary,
         visit_map=Markup(next_visit.draw_visit_map(plan, survey.visit)),
@@ -128,7 +134,7 @@ def report_page(
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
-        data=_script_data(survey, run, objective),
+        data=_script_data(survey, run, objective, drawn),
     )
 
 
@@ -208,8 +214,16 @@ def _page_figure(name: str, svg: str) -> PageFigure:
     return PageFigure(name, caption, base64.b64encode(text.encode()).decode())
 
 
-def _script_data(survey: SurveyFacts, run: RunFacts, objective: str) -> dict[str, object]:
-    """Return what the page's script needs to know."""
+def _find_start_m(survey: SurveyFacts) -> FloatArray:
+    """Return where (2,) the survey began, map frame."""
+    first = int(np.argmin(survey.registration["t_ns"]))
+    return np.array([survey.registration[c][first] for c in ("x_m", "y_m")], float)
+
+
+def _script_data(
+    survey: SurveyFacts, run: RunFacts, objective: str, drawn: str
+) -> dict[str, object]:
+    """Return what the page's script needs to know; `made` tells pages of other plans apart."""
     selection = survey.selection
     covered = _of_all(selection["covered"], selection["covered"][-1])
     return {
@@ -218,6 +232,8 @@ def _script_data(survey: SurveyFacts, run: RunFacts, objective: str) -> dict[str
         "covered": covered.round(5).tolist(),
         "objective": objective,
         "corrections": run.corrections,
+        "survey": run.survey,
+        "made": hashlib.sha256(f"{drawn}{run.corrections}".encode()).hexdigest()[:_DIGITS],
     }
 
 

@@ -227,5 +227,5 @@ const planView = (() => {
   view.style.setProperty("--aspect", fit.width / fit.height);
   show();
   grow(data.chosen);
-  return { data, plan, view, metres, lookAt, say, follow: (each) => followers.push(each) };
+  return { data, plan, view, metres, lookAt, say, pixels: () => pixels, follow: (each) => followers.push(each) };
 })();

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import overlays
+from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
@@ -31,17 +32,18 @@ def add_wall(rows: PlanRows, line_m: FloatArray, thickness_m: float | None, said
     """
     number = rows.next_number("wall")
     half_m = 0.0 if thickness_m is None else thickness_m / 2
-    left = _add_face(rows, number, line_m, half_m)
-    right = -1 if thickness_m is None else _add_face(rows, number, line_m[::-1], half_m)
-    wall = _blank_row(schemas.PLAN_WALLS) | _ends(line_m)
-    wall |= {"wall": number, "face_left": left, "face_right": right, "state": "inferred"}
-    wall |= {"thickness_m": np.nan if thickness_m is None else thickness_m, "corrected": said}
-    rows.walls.append(wall)
+    left = add_face(rows, number, line_m, half_m)
+    right = -1 if thickness_m is None else add_face(rows, number, line_m[::-1], half_m)
+    known = {"face_left": left, "face_right": right, "state": "inferred", "corrected": said}
+    known["thickness_m"] = np.nan if thickness_m is None else thickness_m
+    rows.walls.append(
+        blank_row(schemas.PLAN_WALLS) | end_columns(line_m) | {"wall": number, **known}
+    )
 
 
 def explain_misfit(wall: Row, line_m: FloatArray) -> str | None:
     """Return why a line (2, 2) is no opening of a wall; None where it is one."""
-    start_m, along, length_m = _frame(wall, line_m)
+    start_m, along, length_m = lay_frame(wall, line_m)
     reach_m = np.sort((line_m - start_m) @ along)
     if np.diff(reach_m)[0] < np.hypot(*(line_m[1] - line_m[0])) / 2:
         return f"runs across wall {wall['wall']}, not along it"
@@ -51,25 +53,29 @@ def explain_misfit(wall: Row, line_m: FloatArray) -> str | None:
     return f"reaches {beyond_m:.1f} m beyond wall {wall['wall']}, of {length_m:.1f} m"
 
 
+def lay_beside(wall: Row, line_m: FloatArray) -> FloatArray:
+    """Return where (2, 2) along a wall a line is beside it."""
+    start_m, along, _ = lay_frame(wall, line_m)
+    reach_m = np.sort((line_m - start_m) @ along)
+    return start_m + reach_m[:, None] * along
+
+
 def add_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str, said: str) -> None:
     """Add an opening in a wall where a line (2, 2) is beside it, and cut the wall's faces."""
-    start_m, along, _ = _frame(wall, line_m)
-    reach_m = np.sort((line_m - start_m) @ along)
-    ends_m = start_m + reach_m[:, None] * along
-    half_m = max(_half_m(wall), REACH_M)
-    left_m = half_m * np.array([-along[1], along[0]])
-    opening = _blank_row(schemas.OPENINGS) | _ends(ends_m)
+    ends_m = lay_beside(wall, line_m)
+    left_m = max(_half_m(wall), REACH_M) * left_normals(ends_m[None])[0]
+    opening = blank_row(schemas.OPENINGS) | end_columns(ends_m)
     opening |= {
         "opening": rows.next_number("opening"),
         "wall": wall["wall"],
         "type": kind,
-        "width_m": float(np.diff(reach_m)[0]),
+        "width_m": float(np.hypot(*(ends_m[1] - ends_m[0]))),
         "thickness_m": wall["thickness_m"],
         "room_a": _room_at(rows, ends_m.mean(axis=0) + left_m),
         "room_b": _room_at(rows, ends_m.mean(axis=0) - left_m),
         "corrected": said,
     }
-    _cut_faces(rows, wall, ends_m)
+    cut_faces(rows, wall, ends_m)
     rows.openings.append(opening)
 
 
@@ -84,24 +90,29 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
     if wall is None:
         return None
-    line_m = floorplan.centrelines_m({name: np.array([opening[name]]) for name in ENDS})[0]
-    _, along, _ = _frame(wall, line_m)
+    line_m = ends_of(opening)
+    _, along, _ = lay_frame(wall, line_m)
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
     half_m = _half_m(wall)
     if wall["face_left"] >= 0:
-        _add_face(rows, wall["wall"], line_m, half_m)
+        add_face(rows, wall["wall"], line_m, half_m)
     if wall["face_right"] >= 0:
-        _add_face(rows, wall["wall"], line_m[::-1], half_m)
+        add_face(rows, wall["wall"], line_m[::-1], half_m)
     return wall
 
 
-def _add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:
-    """Add an inferred face beside a line, to the left of its direction; return its number."""
-    along = np.diff(line_m, axis=0)[0]
-    normal = np.array([-along[1], along[0]]) / np.hypot(*along)
+def add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:
+    """Add an inferred face beside a line (2, 2), to the left of its direction.
+
+    Returns
+    -------
+    int
+        Its number.
+    """
+    normal = left_normals(line_m[None])[0]
     number = rows.next_number("face")
-    face = _blank_row(schemas.FACES) | _ends(line_m + off_m * normal)
+    face = blank_row(schemas.FACES) | end_columns(line_m + off_m * normal)
     nx, ny = normal.tolist()
     rows.faces.append(
         face | {"face": number, "nx": nx, "ny": ny, "state": "inferred", "wall": wall}
@@ -109,23 +120,28 @@ def _add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> in
     return number
 
 
-def _cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
+def cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
     """Cut an opening out of the faces of its wall; a second part gets a number of its own."""
     half_m = np.array([_half_m(wall) + REACH_M])
     (gap,) = floorplan.buffer_lines(ends_m[None], half_m)
     for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
-        parts = shapely.get_parts(overlays.subtract_lines(_line(face), gap))
+        parts = shapely.get_parts(overlays.subtract_lines(shapely.LineString(ends_of(face)), gap))
         parts = parts[shapely.length(parts) > 0]
         if len(parts) == 0:
             rows.faces.remove(face)
             continue
-        face |= _ends(shapely.get_coordinates(parts[0]))
+        face |= end_columns(shapely.get_coordinates(parts[0]))
         for part in parts[1:]:
             number = rows.next_number("face")
-            rows.faces.append(face | _ends(shapely.get_coordinates(part)) | {"face": number})
+            rows.faces.append(face | end_columns(shapely.get_coordinates(part)) | {"face": number})
 
 
-def _frame(wall: Row, line_m: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+def ends_of(row: Row) -> FloatArray:
+    """Return where (2, 2) the line of a row begins and ends."""
+    return np.array([row[name] for name in ENDS], float).reshape(2, 2)
+
+
+def lay_frame(wall: Row, line_m: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return where a wall's line starts, its direction, and its length in metres.
 
     A curved one is laid straight along its tangent beside the middle of another line (2, 2).
@@ -151,16 +167,12 @@ def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
     return inside[0] if inside else -1
 
 
-def _line(row: Row) -> shapely.LineString:
-    x0_m, y0_m, x1_m, y1_m = (row[name] for name in ENDS)
-    return shapely.LineString([(x0_m, y0_m), (x1_m, y1_m)])
-
-
-def _ends(line_m: FloatArray) -> Row:
+def end_columns(line_m: FloatArray) -> Row:
+    """Return the columns of where a line (2, 2) begins and ends."""
     return dict(zip(ENDS, line_m.ravel().tolist(), strict=True))
 
 
-def _blank_row(schema: schemas.Schema) -> Row:
+def blank_row(schema: schemas.Schema) -> Row:
     """Return a row of which nothing is known."""
     blanks = {"float64": np.nan, "bool": False, "string": ""}
     return {name: blanks.get(kind, 0) for name, kind in schema.columns.items()}

@@ -7,12 +7,13 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan.corrections import added
+from scanplan.plan.corrections import added, changed, outlines
 from scanplan.plan.corrections.rows import PlanRows, Row
-from scanplan.project.corrections_file import POINTS, Correction
+from scanplan.project.corrections_file import OUTLINES, POINTS, Correction
 from scanplan.types import FloatArray
 
 SAID = {
+    "remove": "changed by hand",
     "keep": "kept by hand",
     "change": "changed by hand",
     "add": "added by hand",
@@ -43,11 +44,11 @@ class Outcome:
 
 
 def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outcome:
-    """Carry corrections out on the rows of a plan, in their order; what is added comes last.
+    """Carry corrections out on the rows of a plan, in their order, rooms last.
 
     Walls and openings are those nearest to the place of an entry, within reach, rooms those that
     it is in. Numbers stay what they were. With a wall go its faces, its openings and its evidence;
-    rooms keep their outlines.
+    rooms keep their outlines, but for those that are parted or one.
 
     Parameters
     ----------
@@ -63,11 +64,27 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         nothing is left of the plan.
     """
     outcome = Outcome()
+    said = [correction for correction in corrections if correction.element not in POINTS]
+    of_rooms = [c for c in said if c.element == "room" and c.action not in OUTLINES]
+    _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
+    for correction in said:
+        if correction.action == "add":
+            _add(rows, correction, outcome)
+    # walls are what parts them, and names are of the rooms that are left
+    for correction in said:
+        if correction.action in OUTLINES:
+            _draw_outline(rows, correction, outcome)
+    _apply_found(rows, of_rooms, outcome)
+    if not rows.faces:
+        raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
+    return outcome
+
+
+def _apply_found(rows: PlanRows, said: Sequence[Correction], outcome: Outcome) -> None:
+    """Carry out what is said of elements that there are."""
     matched: dict[tuple[str, int], Correction] = {}
     found: list[tuple[Correction, Row]] = []
-    for correction in corrections:
-        if correction.action == "add":
-            continue
+    for correction in said:
         row = _find(rows, correction)
         if row is None:
             outcome.unmatched.append(_tell_unmatched(correction))
@@ -79,22 +96,18 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
             raise StageError(f"{correction.entry}: {fault}; keep one of the two")
         found.append((correction, row))
     for correction, row in found:
-        _change(rows, correction, row, outcome)
-    for correction in corrections:
-        if correction.action == "add" and correction.element not in POINTS:
-            _add(rows, correction, outcome)
-    outcome.n_applied += len(found)
-    if not rows.faces:
-        raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
-    return outcome
+        fault = _change(rows, correction, row, outcome)
+        outcome.n_applied += fault is None
+        if fault:
+            number = row[correction.element]
+            outcome.unmatched.append(f"{correction.entry}: {correction.element} {number} {fault}")
 
 
 def _find(rows: PlanRows, correction: Correction) -> Row | None:
     """Return the row that an entry is of; None where there is none."""
     place = shapely.Point(correction.at_m)
     if correction.element == "room":
-        inside = [r for r in rows.rooms if shapely.from_wkb(r["geometry"]).covers(place)]
-        return inside[0] if inside else None
+        return outlines.find_room(rows, place)
     return added.find_nearest(rows.of(correction.element), place)
 
 
@@ -102,24 +115,43 @@ def _tell_unmatched(correction: Correction) -> str:
     x_m, y_m = correction.at_m
     nothing = {
         "room": "lies in no room",
-        "wall": f"lies within {added.REACH_M} m of no wall",
-        "opening": f"lies within {added.REACH_M} m of no opening",
-    }[correction.element]
+    }.get(correction.element, f"lies within {added.REACH_M} m of no {correction.element}")
     return f"{correction.entry}: ({x_m:g}, {y_m:g}) {nothing}: not applied"
 
 
-def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
-    if correction.action == "remove":
+def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> str | None:
+    """Carry out what is said of a row; return why it was not, if so."""
+    if correction.element == "face":
+        act = changed.keep_face if correction.action == "keep" else changed.remove_face
+        return act(rows, row, SAID[correction.action])
+    is_change = correction.action == "change"
+    if is_change and (fault := _CHANGES[correction.element](rows, row, correction)):
+        return fault
+    if correction.action == "remove" or (correction.element == "wall" and correction.kind):
         _remove(rows, correction, row, outcome)
-        return
+        return None
     row["corrected"] = SAID[correction.action]
-    if correction.element == "room" and correction.action == "change":
-        row["name"] = correction.name
-    elif correction.action == "change":
-        row["type"] = correction.kind
     # what a person has looked at needs no other to verify it
     row |= {"verify": False} if "verify" in row else {}
     row |= {name: "" for name in ("about", "doubt") if name in row}
+    return None
+
+
+def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
+    room["name"] = " ".join(filter(None, [correction.number, correction.name or room["name"]]))
+
+
+def _draw_outline(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
+    """Part a room, or join two."""
+    if correction.action == "split":
+        fault = outlines.split_room(rows, np.array(correction.line_m), SAID["change"])
+    else:
+        places_m = np.array(correction.at_m), np.array(correction.with_m)
+        fault = outlines.merge_rooms(rows, *places_m, SAID["change"])
+    outcome.n_applied += fault is None
+    if fault:
+        x_m, y_m = correction.at_m
+        outcome.unmatched.append(f"{correction.entry}: ({x_m:g}, {y_m:g}) {fault}: not applied")
 
 
 def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
@@ -154,6 +186,8 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
         raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
     added.add_opening(rows, wall, line_m, correction.kind, SAID["add"])
+    heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
+    rows.openings[-1] |= {name: of for name, of in heights_m.items() if of is not None}
     outcome.n_applied += 1
 
 
@@ -165,3 +199,10 @@ def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> N
     if off_m > _FARTHEST_M:
         fault = f"the wall lies {off_m:.0f} m beyond the plan, at most {_FARTHEST_M:.0f} m are"
         raise StageError(f"{correction.entry}: {fault} drawn; give `line` in metres of the map")
+
+
+_CHANGES = {
+    "wall": changed.change_wall,
+    "opening": changed.change_opening,
+    "room": _change_room,
+}

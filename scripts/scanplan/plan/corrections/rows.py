@@ -16,6 +16,7 @@ _SCHEMAS = {
     "openings": schemas.OPENINGS,
     "rooms": schemas.ROOMS,
     "evidence": schemas.EVIDENCE,
+    "furniture": schemas.FURNITURE,
 }
 
 
@@ -28,13 +29,17 @@ class PlanRows:
     openings: list[Row]
     rooms: list[Row]
     evidence: list[Row]
+    furniture: list[Row]
 
     def of(self, element: str) -> list[Row]:
-        """Return the rows of walls, openings or rooms by the singular."""
+        """Return the rows of walls, faces, openings or rooms by the singular."""
         return getattr(self, f"{element}s")
 
     def drop(self, element: str, number: int) -> None:
-        """Remove a wall with its faces and evidence, an opening, or a room and what names it."""
+        """Remove a wall with its faces and evidence, an opening, or a room and what names it.
+
+        Likewise a face.
+        """
         kept = [row for row in self.of(element) if row[element] != number]
         setattr(self, f"{element}s", kept)
         if element == "wall":

@@ -8,13 +8,15 @@ import subprocess
 import sys
 import webbrowser
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
 from scanplan import interrupts, surroundings
 from scanplan.errors import StageError
-from scanplan.plain_types import FilePath
 from scanplan.project.code_files import state_version
+from scanplan.project.run.edit_server import EditServer
+from scanplan.project.run.edit_session import EditSession
 
 SNAKEFILE = Path(__file__).absolute().parents[4] / "workflow/Snakefile"
 """The workflow that lies beside this package, in a checkout and in a wheel alike."""
@@ -22,6 +24,8 @@ DEMO = "demo"
 DIFF = "diff"
 OPEN = "open"
 
+_SNAKEMAKE = (sys.executable, "-P", "-m", "snakemake")
+"""Snakemake; -P: modules are not looked for among the user's files."""
 _WRONG_CALL = 2  # the exit status of shells' own commands where their arguments are wrong
 
 
@@ -38,8 +42,7 @@ def main(words: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if words is None else words)
     try:
         if given[:1] == [OPEN]:
-            open_report(_read_folder(given[1:]))
-            return 0
+            return open_results(_read_open(given[1:]))
         arguments = form_arguments(given)
     except StageError as error:
         print(f"scanplan: {error}", file=sys.stderr)
@@ -88,19 +91,27 @@ def form_arguments(words: Sequence[str]) -> list[str]:
     return arguments
 
 
-def open_report(results: FilePath) -> None:
-    """Show the report of a folder of results in the browser.
+def open_results(asked: argparse.Namespace) -> int:
+    """Show the report of a folder of results in the browser and take corrections, until Ctrl-C.
 
     Raises
     ------
     StageError
-        If there is no report, or no browser.
+        If there is no report, or nothing says what it is of.
     """
-    page = Path(results, "report.html")
-    if not page.is_file():
-        raise StageError(f"{page}: there is no such report; name a folder below results/")
-    if not webbrowser.open(page.resolve().as_uri()):
-        raise StageError(f"{page}: no browser could be started; open the file in one")
+    _prepare_environment()
+    snakemake = [*_SNAKEMAKE, "--snakefile", str(SNAKEFILE), "--cores", asked.cores]
+    session = EditSession(Path(asked.results), snakemake)
+    with EditServer(session) as server:
+        print(f"scanplan: the report is at {server.address}", flush=True)
+        print(f"scanplan: corrections go to {session.place}; Ctrl-C ends", flush=True)
+        if not asked.no_browser and not webbrowser.open(server.address):
+            print("scanplan: no browser could be started; open the address in one", flush=True)
+        interrupts.begin_work()
+        with suppress(KeyboardInterrupt):
+            server.serve_forever()
+        session.end()
+    return 0
 
 
 class _Parser(argparse.ArgumentParser):
@@ -115,7 +126,7 @@ def _make_parser() -> _Parser:
         prog="scanplan",
         description="Makes floor plans of LiDAR recordings, in results/ of the folder it runs in.",
         epilog="`scanplan diff BEFORE AFTER` tells what changed between two surveys of a floor;"
-        " `scanplan open results/NAME` shows a report in the browser. A run says which"
+        " `scanplan open results/NAME` shows a report and takes corrections. A run says which"
         " command of Snakemake it is; whatever else Snakemake can do is added to that one.",
         allow_abbrev=False,
     )
@@ -144,10 +155,16 @@ def _read_cores(word: str) -> str:
     return word
 
 
-def _read_folder(words: Sequence[str]) -> str:
-    parser = _Parser(prog=f"scanplan {OPEN}", description="Shows a report in the browser.")
+def _read_open(words: Sequence[str]) -> argparse.Namespace:
+    parser = _Parser(
+        prog=f"scanplan {OPEN}",
+        description="Shows a report in the browser, saves what is corrected there beside the"
+        " recording, and makes the plan anew; on this computer alone, until Ctrl-C.",
+    )
     parser.add_argument("results", help="a folder with results, such as results/demo")
-    return parser.parse_args(words).results
+    parser.add_argument("--no-browser", action="store_true", help="tell the address alone")
+    parser.add_argument("--cores", type=_read_cores, default="2", metavar="N", help="(2)")
+    return parser.parse_args(words)
 
 
 def _show(arguments: Sequence[str]) -> str:
@@ -156,13 +173,17 @@ def _show(arguments: Sequence[str]) -> str:
 
 def _begin_snakemake(arguments: Sequence[str]) -> int:
     """Run Snakemake as `make run` does: in this process's place, where the system knows that."""
+    _prepare_environment()
+    command = [*_SNAKEMAKE, *arguments]
+    if os.name != "nt":
+        os.execv(sys.executable, command)
+    return subprocess.run(command, check=False).returncode
+
+
+def _prepare_environment() -> None:
+    """Have the stages of a run find the programs of this environment, and compiled modules."""
     interrupts.prepare_children()
     folders = [str(Path(sys.executable).parent), os.environ.get("PATH", "")]
     os.environ["PATH"] = os.pathsep.join(filter(None, folders))
     # every stage is a process, which would compile the package anew
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    # -P: modules are not looked for among the user's files
-    command = [sys.executable, "-P", "-m", "snakemake", *arguments]
-    if os.name != "nt":
-        os.execv(sys.executable, command)
-    return subprocess.run(command, check=False).returncode

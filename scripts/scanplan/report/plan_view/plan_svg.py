@@ -56,12 +56,15 @@ def growing_plan_svg(
         '<g id="points">', _point_image(points), "</g>",
         '<g id="finished">', *draw_walls(plan), *_openings(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
+        '<g id="edits"></g>',
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *_shown(shown_m), "</g>",
         '<g id="scans">', *_scans(positions_m), "</g>",
         '<g id="labels">', *_labels(plan), "</g>",
         '<g id="doubts">', *_doubts(plan), "</g>",
+        '<g id="ticks"></g>',
         '<g id="tape"></g>',
+        '<g id="handles"></g>',
         "</svg>",
     ])  # fmt: skip
 
@@ -92,9 +95,18 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
         "face": floorplan.centrelines_m(faces),
         "opening": floorplan.centrelines_m(plan.openings),
     }
+    known = {
+        "wall": [f' data-thickness="{m:.3f}"' for m in np.nan_to_num(plan.walls["thickness_m"])],
+        "face": [""] * len(rows),
+        "opening": [
+            f' data-kind="{escape(kind)}" data-wall="{wall}"'
+            for kind, wall in zip(plan.openings["type"], plan.openings["wall"], strict=True)
+        ],
+    }
     for kind, columns in (("wall", plan.walls), ("face", faces), ("opening", plan.openings)):
-        for number, line_m in zip(columns[kind].tolist(), lines_m[kind], strict=True):
-            yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"')
+        drawn = zip(columns[kind].tolist(), lines_m[kind], known[kind], strict=True)
+        for number, line_m, more in drawn:
+            yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"{more}')
 
 
 def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
@@ -123,13 +135,13 @@ def _point_image(points: PointImage) -> str:
 
 def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Write each room's name and area; its width says how much of them there is room for."""
-    rooms = (plan.rooms[c].tolist() for c in ("area_m2", "closed", "x_m", "y_m"))
-    names, widths_m = plan.room_names, plan.label_widths_m.tolist()
-    for name, area_m2, closed, x_m, y_m, width_m in zip(names, *rooms, widths_m, strict=True):
+    rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
+    named = plan.room_names, *rooms, plan.label_widths_m.tolist()
+    for name, room, area_m2, closed, x_m, y_m, width_m in zip(*named, strict=True):
         place = f'x="{format_number(x_m)}" y="{format_number(-y_m)}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
         yield (
-            f'<g class="label" data-width="{format_number(width_m)}">'
+            f'<g class="label" data-label="room {room}" data-width="{format_number(width_m)}">'
             f"<text {place}>{escape(name)}</text>"
             f'<text class="area" {place} dy="1.2em">{area}</text></g>'
         )

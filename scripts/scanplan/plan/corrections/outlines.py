@@ -1,0 +1,151 @@
+"""Rooms that a person parts by a line, or takes for one."""
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.geometry import overlays
+from scanplan.plan import floorplan
+from scanplan.plan.corrections import added
+from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.store import schemas
+from scanplan.types import FloatArray
+
+_THICKEST_M = 1.0
+"""Between rooms that are one: no more than the thickest wall that may have been drawn there."""
+_SLACK_M = 0.01
+"""By which shapes overlap that are to be joined: more than rounding, less than is drawn."""
+_LABEL_M = 0.05
+"""How far the middle of a room's largest circle may be off: a label is placed there."""
+_SMALLEST_M2 = 0.2
+"""Of a part of a room: less is a niche, or a line drawn along a wall."""
+
+
+def split_room(rows: PlanRows, line_m: FloatArray, said: str) -> str | None:
+    """Part the room that the middle of a line (2, 2) is in; the larger part keeps its number.
+
+    The line is made longer by `added.REACH_M` at both ends, as far as the room goes. It becomes a
+    passage in no wall.
+
+    Returns
+    -------
+    str or None
+        Why it was not done.
+    """
+    middle = shapely.Point(line_m.mean(axis=0))
+    room = find_room(rows, middle)
+    if room is None:
+        return "lies in no room"
+    outline = shapely.from_wkb(room["geometry"])
+    cut = _cut_through(outline, line_m, middle)
+    parts = overlays.enclose_areas(
+        shapely.get_parts(overlays.unite_lines([shapely.boundary(outline), cut]))
+    )
+    # what a hole of the room is, lies on neither side
+    parts = [part for part in parts if outline.covers(part.representative_point())]
+    parts.sort(key=lambda part: -part.area)
+    if len(parts) != 2 or parts[1].area < _SMALLEST_M2:
+        return "does not part the room from wall to wall"
+    number, other = room["room"], rows.next_number("room")
+    kept = parts[0]
+    rows.rooms.append(room | {"room": other, "name": ""} | _shape_columns(parts[1]))
+    room |= _shape_columns(kept)
+    for row in (room, rows.rooms[-1]):
+        row["corrected"] = said
+    for opening in rows.openings:
+        place = shapely.Point(added.ends_of(opening).mean(axis=0))
+        is_others = parts[1].distance(place) < kept.distance(place)
+        for side in ("room_a", "room_b") if is_others else ():
+            opening[side] = other if opening[side] == number else opening[side]
+    ends_m = shapely.get_coordinates(cut)[[0, -1]]
+    passage = {"opening": rows.next_number("opening"), "wall": -1, "type": "passage"}
+    passage |= {"room_a": number, "room_b": other, "thickness_m": np.nan, "corrected": said}
+    passage["width_m"] = float(np.hypot(*(ends_m[1] - ends_m[0])))
+    rows.openings.append(added.blank_row(schemas.OPENINGS) | added.end_columns(ends_m) | passage)
+    return None
+
+
+def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: str) -> str | None:
+    """Take two rooms for one, with what is between them and no wall; the first keeps its number.
+
+    Returns
+    -------
+    str or None
+        Why it was not done.
+    """
+    room, other = (find_room(rows, shapely.Point(place)) for place in (place_m, other_m))
+    if room is None or other is None:
+        return "lies in no room, or the place that it is one with does"
+    if room is other:
+        return "lies in one room with the other place"
+    one, two = (shapely.from_wkb(row["geometry"]) for row in (room, other))
+    apart_m = one.distance(two)
+    if apart_m > _THICKEST_M:
+        return f"lies {apart_m:.1f} m from the other room, at most {_THICKEST_M:g} m are bridged"
+    between = overlays.subtract_areas(_fill_between(one, two, apart_m), _draw_walls(rows))
+    joined = overlays.unite_areas([one, two, between])
+    whole = max(shapely.get_parts(joined), key=lambda part: part.area)
+    if not (whole.intersects(one) and whole.intersects(two)):
+        return "is parted from the other room by a wall; remove that, too"
+    room |= _shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
+    room |= {"closed": room["closed"] and other["closed"], "corrected": said}
+    room |= {"name": room["name"] or other["name"]}
+    room["n_scans"] = max(room["n_scans"], other["n_scans"])
+    rows.rooms.remove(other)
+    for opening in rows.openings:
+        for side in ("room_a", "room_b"):
+            is_others = opening[side] == other["room"]
+            opening[side] = room["room"] if is_others else opening[side]
+    rows.openings = [row for row in rows.openings if not _is_inside(row, room["room"])]
+    return None
+
+
+def find_room(rows: PlanRows, place: shapely.Point) -> Row | None:
+    """Return the row of the room that a place is in; None of none."""
+    inside = [row for row in rows.rooms if shapely.from_wkb(row["geometry"]).covers(place)]
+    return inside[0] if inside else None
+
+
+def _cut_through(
+    outline: BaseGeometry, line_m: FloatArray, middle: shapely.Point
+) -> shapely.LineString:
+    """Return what of a line, made longer, is in a room around its middle."""
+    along = np.diff(line_m, axis=0)[0]
+    more_m = added.REACH_M * along / np.hypot(*along)
+    longer = shapely.LineString([line_m[0] - more_m, line_m[1] + more_m])
+    inside = shapely.get_parts(overlays.intersect_lines(longer, outline))
+    return min(inside, key=lambda part: part.distance(middle))
+
+
+def _fill_between(one: BaseGeometry, two: BaseGeometry, apart_m: float) -> BaseGeometry:
+    """Return the ground between two shapes so far apart, and hardly any beyond their corners."""
+    reach = [
+        overlays.buffer_shapes(shape, apart_m + _SLACK_M, join_style="mitre")
+        for shape in (one, two)
+    ]
+    by_m = apart_m / 2 + _SLACK_M
+    grown = overlays.buffer_shapes(overlays.unite_areas([one, two]), by_m, join_style="mitre")
+    closed = overlays.buffer_shapes(grown, -by_m, join_style="mitre")
+    return overlays.intersect_areas(closed, overlays.intersect_areas(*reach))
+
+
+def _draw_walls(rows: PlanRows) -> BaseGeometry:
+    """Return the ground of walls, less their openings."""
+    half_m = [max(float(np.nan_to_num(wall["thickness_m"])) / 2, _SLACK_M) for wall in rows.walls]
+    axes = np.array([floorplan.draw_axis(wall) for wall in rows.walls], object)
+    bodies = overlays.buffer_shapes(axes, np.array(half_m), cap_style="square")
+    cuts = [shapely.LineString(added.ends_of(opening)) for opening in rows.openings]
+    gaps = overlays.buffer_shapes(np.array(cuts, object), _THICKEST_M, cap_style="flat")
+    return overlays.subtract_areas(overlays.unite_areas(bodies), overlays.unite_areas(gaps))
+
+
+def _is_inside(opening: Row, room: int) -> bool:
+    """Return whether an opening in no wall has one room on both sides."""
+    return opening["wall"] < 0 and opening["room_a"] == opening["room_b"] == room
+
+
+def _shape_columns(outline: shapely.Polygon) -> Row:
+    circle = shapely.maximum_inscribed_circle(outline, tolerance=_LABEL_M)
+    x_m, y_m = shapely.get_coordinates(circle)[0].tolist()
+    measures = {"area_m2": outline.area, "perimeter_m": outline.length, "x_m": x_m, "y_m": y_m}
+    return {**measures, "geometry": shapely.to_wkb(outline)}

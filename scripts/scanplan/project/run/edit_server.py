@@ -1,0 +1,171 @@
+"""A server for the report's page on this computer alone: it shows results and takes corrections.
+
+It listens on 127.0.0.1. Whoever asks needs the token in the address; a page of another site, or a
+name that leads here, gets nothing.
+"""
+
+import json
+import mimetypes
+import secrets
+import sys
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import Any, cast
+from urllib.parse import unquote, urlsplit
+
+from scanplan.errors import StageError
+from scanplan.project.run.edit_session import ConflictError, EditSession
+
+_HERE = "127.0.0.1"
+_MOST_BYTES = 2**18
+"""Of what a page sends: as much as is read of a file of corrections."""
+_PATIENCE_S = 30  # for a request that has begun: a page here needs milliseconds
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+}
+"""What no other page may do with an answer: keep, embed, guess or frame it, learn its address."""
+_SHOWN = (
+    *(".html", ".pdf", ".svg", ".png", ".dxf", ".geojson", ".ifc", ".glb", ".gpkg", ".csv"),
+    *(".json", ".pgm", ".yaml", ".tum", ".txt"),
+)
+"""Files that the page links, by suffix; tables and recordings are none of them."""
+
+
+class EditServer(ThreadingHTTPServer):
+    """The server of a session, on a free port.
+
+    Attributes
+    ----------
+    session : edit_session.EditSession
+    token : str
+        What all addresses begin with.
+    """
+
+    daemon_threads = True
+
+    def __init__(self, session: EditSession) -> None:
+        super().__init__((_HERE, 0), _Handler)
+        self.session = session
+        self.token = secrets.token_urlsafe(24)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a page that has left before its answer."""
+        if not isinstance(sys.exception(), ConnectionError | TimeoutError):
+            super().handle_error(request, client_address)
+
+    @property
+    def address(self) -> str:
+        """The address of the page."""
+        return f"http://{_HERE}:{self.server_port}/{self.token}/report.html"
+
+
+class _Handler(BaseHTTPRequestHandler):
+    timeout = _PATIENCE_S
+    server_version, sys_version = "scanplan", ""
+
+    @property
+    def _served(self) -> EditServer:
+        return cast(EditServer, self.server)
+
+    def do_GET(self) -> None:
+        place = self._find_place()
+        if place == ("api", "state"):
+            self._answer(self._served.session.state)
+        elif place == ("api", "run"):
+            self._answer(self._served.session.tell_run)
+        elif place is not None:
+            self._send_file(place)
+
+    def do_POST(self) -> None:
+        place = self._find_place()
+        if place is None:
+            return
+        fault = self._find_fault(place)
+        if fault is not None:
+            self._refuse(*fault)
+            return
+        try:
+            asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        except (ValueError, RecursionError):
+            asked = None
+        if isinstance(asked, dict):
+            self._answer(lambda: self._served.session.save(asked))
+        else:
+            self._refuse(HTTPStatus.BAD_REQUEST, "expected `survey`, `revision` and `entries`")
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Say nothing: addresses hold the token."""
+
+    def _find_place(self) -> tuple[str, ...] | None:
+        """Return the parts of the path after the token; None where nobody may ask."""
+        host = self.headers.get("Host")
+        # another name that leads here is one that a page elsewhere has given it
+        is_here = host in [f"{name}:{self._served.server_port}" for name in (_HERE, "localhost")]
+        if not is_here or self.headers.get("Origin", f"http://{host}") != f"http://{host}":
+            self._refuse(HTTPStatus.FORBIDDEN, "asked by another page")
+            return None
+        token, *place = urlsplit(self.path).path.lstrip("/").split("/")
+        if not secrets.compare_digest(token.encode(), self._served.token.encode()):
+            self._refuse(HTTPStatus.FORBIDDEN, "the address lacks its token; open it again")
+            return None
+        return tuple(map(unquote, place))
+
+    def _find_fault(self, place: tuple[str, ...]) -> tuple[HTTPStatus, str] | None:
+        """Return why what is sent is not read."""
+        length = self.headers.get("Content-Length", "")
+        if "Origin" not in self.headers:
+            return HTTPStatus.FORBIDDEN, "asked by no page"
+        if place != ("api", "corrections"):
+            return HTTPStatus.NOT_FOUND, "nothing is there"
+        if self.headers.get_content_type() != "application/json":
+            return HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "expected JSON"
+        if not (length.isascii() and length.isdigit()):
+            return HTTPStatus.LENGTH_REQUIRED, "does not say how long it is"
+        if len(length) > len(str(_MOST_BYTES)) or int(length) > _MOST_BYTES:
+            fault = f"the corrections have more than {_MOST_BYTES} bytes; take some back"
+            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, fault
+        return None
+
+    def _send_file(self, place: tuple[str, ...]) -> None:
+        folder = self._served.session.results
+        is_plain = all(part and part[0] != "." and not set(part) & set("/\\\0") for part in place)
+        path = folder.joinpath(*place)
+        try:
+            is_inside = is_plain and path.resolve().is_relative_to(folder.resolve())
+            content = path.read_bytes() if is_inside and path.suffix in _SHOWN else None
+        except OSError:
+            content = None
+        if content is None:
+            self._refuse(HTTPStatus.NOT_FOUND, "nothing is there")
+            return
+        kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
+        self._send(HTTPStatus.OK, kind, content)
+
+    def _answer(self, act: Callable[[], Mapping[str, Any]]) -> None:
+        status = HTTPStatus.OK
+        try:
+            said = act()
+        except ConflictError as error:
+            status = HTTPStatus.CONFLICT
+            said = {**self._served.session.state(), "error": str(error)}
+        except StageError as error:
+            status, said = HTTPStatus.BAD_REQUEST, {"error": str(error)}
+        self._send(status, "application/json", json.dumps(said).encode())
+
+    def _refuse(self, status: HTTPStatus, fault: str) -> None:
+        self._send(status, "application/json", json.dumps({"error": fault}).encode())
+
+    def _send(self, status: HTTPStatus, kind: str, content: bytes) -> None:
+        is_text = kind.startswith("text/") or kind.endswith(("json", "xml"))
+        self.send_response(status)
+        self.send_header("Content-Type", kind + "; charset=utf-8" * is_text)
+        self.send_header("Content-Length", str(len(content)))
+        for name, value in _HEADERS.items():
+            self.send_header(name, value)
+        self.end_headers()
+        self.wfile.write(content)

@@ -1,0 +1,362 @@
+"""The server behind the report's page: what it shows, saves and runs, and who may ask it."""
+
+import contextlib
+import http.client
+import json
+import os
+import sys
+import threading
+import time
+
+import pytest
+
+from scanplan.errors import StageError
+from scanplan.project.corrections_file import read_corrections
+from scanplan.project.run.edit_server import EditServer
+from scanplan.project.run.edit_session import EditSession
+
+SURVEY = "floor 0123"
+WALL = {"element": "wall", "at": [1.0, 2.0], "action": "remove"}
+ROOM = {"element": "room", "at": [3.0, 2.0], "name": "Küche </script> \u2028"}
+RUN = "import sys, json; print(' 1/2 floor correct_plan:  0.1 s  1 of 1'); print(sys.argv[1:])"
+FAILED = "import sys; print('scanplan: correct_plan: entry 1: fault; remedy'); sys.exit(1)"
+DATA = {"made": "abc", "survey": SURVEY, "corrections": [{"name": '"made": "no"'}]}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    results = tmp_path / "results/floor"
+    (results / "plan").mkdir(parents=True)
+    (tmp_path / "rec").mkdir()
+    data = json.dumps(DATA)
+    page = f'<script type="application/json" id="data">{data}</script>'
+    (results / "report.html").write_text(page)
+    (results / "plan/plan.pdf").write_bytes(b"%PDF")
+    (results / "poses.parquet").write_bytes(b"PAR1")
+    (results / ".hidden.html").write_text("no")
+    (tmp_path / "secret.txt").write_text("no")
+    (results / "link.txt").symlink_to(tmp_path / "secret.txt")
+    (results / "source.txt").write_text("rec\n")
+    note = {"storeys": [], "settings": {"plan": {"merge": {"min_scans": 3}}}}
+    (results / "run.json").write_text(json.dumps(note))
+    return results
+
+
+@contextlib.contextmanager
+def serving(folder, run=RUN):
+    session = EditSession(folder, [sys.executable, "-c", run])
+    with EditServer(session) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+        thread.start()
+        try:
+            yield server
+        finally:
+            server.shutdown()
+            thread.join()
+            session.end()
+
+
+@pytest.fixture
+def server(folder):
+    with serving(folder) as made:
+        yield made
+
+
+def ask(server, place, body=None, token=None, method=None, **headers):
+    """Status and content of an answer; with a body it is a page of ours that asks."""
+    host = f"127.0.0.1:{server.server_port}"
+    sent = {"Host": host}
+    if body is not None:
+        sent |= {"Origin": f"http://{host}", "Content-Type": "application/json"}
+        body = body if isinstance(body, bytes) else json.dumps(body).encode()
+    sent |= {name.replace("_", "-"): value for name, value in headers.items()}
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=20)
+    path = f"/{server.token if token is None else token}/{place}"
+    method = method or ("GET" if body is None else "POST")
+    kept = {name: value for name, value in sent.items() if value is not None}
+    connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
+    if body is not None:
+        kept.setdefault("Content-Length", str(len(body)))
+    for name, value in kept.items():
+        connection.putheader(name, value)
+    connection.endheaders(body)
+    answer = connection.getresponse()
+    content = answer.read()
+    connection.close()
+    is_json = answer.headers.get_content_type() == "application/json"
+    return answer.status, json.loads(content) if is_json else content
+
+
+def save(server, *entries, **changed):
+    asked = {"survey": SURVEY, "revision": "", "entries": list(entries)} | changed
+    return ask(server, "api/corrections", asked)
+
+
+def wait(server):
+    for _ in range(400):
+        status, said = ask(server, "api/run")
+        assert status == 200
+        if not said["running"]:
+            return said
+        time.sleep(0.02)
+    raise AssertionError("the run does not end")
+
+
+def test_the_page_and_the_files_that_it_links_are_shown(server, folder):
+    assert ask(server, "report.html") == (200, (folder / "report.html").read_bytes())
+    assert ask(server, "plan/plan.pdf") == (200, b"%PDF")
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        *("", "nothing.html", "plan", "plan/", "poses.parquet", ".hidden.html", "link.txt"),
+        *("../source.txt", "../../secret.txt", "%2e%2e/%2e%2e/secret.txt", "..%2f..%2fsecret.txt"),
+        *(
+            "plan/../../../secret.txt",
+            "//etc/passwd.txt",
+            "%2fetc%2fhosts.txt",
+            "plan%5c..%5cx.txt",
+        ),
+        *("report.html%00.txt", "%ff%fe.html", "a" * 3000 + ".html", "api/none", "run.json/x.txt"),
+    ],
+)
+def test_nothing_else_is(server, place):
+    status, said = ask(server, place)
+    assert status == 404 and said == {"error": "nothing is there"}
+
+
+def test_what_is_saved_is_a_file_beside_the_recording_and_begins_a_run(server, folder):
+    assert save(server, WALL, ROOM)[0] == 200
+    path = folder.parents[1] / "rec/corrections.yaml"
+    wall, room = read_corrections(path)
+    assert (wall.action, wall.at_m) == ("remove", (1.0, 2.0))
+    # two characters that end a line elsewhere are refused
+    assert room.name == ROOM["name"].strip()
+    said = wait(server)
+    assert (said["ended"], said["total"], "error" in said) == (1, 2, False)
+
+
+def test_a_hostile_name_is_refused_and_nothing_is_written(server, folder):
+    hostile = {**ROOM, "name": "a\nb: {{ 1 }}"}
+    status, said = save(server, hostile)
+    assert status == 400 and said["error"].startswith("entry 1: name has")
+    assert list((folder.parents[1] / "rec").iterdir()) == []
+
+
+def test_the_run_gets_the_dataset_and_the_settings_that_made_the_results(folder):
+    run = "import sys; print(sys.argv[1:]); print(open(sys.argv[2]).read())"
+    with serving(folder, run) as server:
+        save(server, WALL)
+        wait(server)
+        told = "\n".join(server.session._lines)
+    assert "'--configfile'" in told and "min_scans: 3" in told
+    assert """'--config', 'dataset=["rec"]'""" in told
+
+
+def test_storeys_of_a_building_are_made_together(folder):
+    note = {"storeys": ["cellar", "rec"], "settings": {}}
+    (folder / "run.json").write_text(json.dumps(note))
+    with serving(folder) as server:
+        save(server, WALL)
+        wait(server)
+        assert server.session._lines[-1] == """['--config', 'dataset=["cellar", "rec"]']"""
+
+
+def test_a_run_that_fails_is_told_in_one_line(folder):
+    with serving(folder, FAILED) as server:
+        save(server, WALL)
+        assert wait(server)["error"] == "correct_plan: entry 1: fault; remedy"
+
+
+def test_while_a_run_is_at_work_nothing_is_saved(folder):
+    with serving(folder, "import time; time.sleep(60)") as server:
+        save(server, WALL)
+        status, said = save(server, ROOM)
+        assert status == 400 and "a run is at work" in said["error"]
+
+
+def test_what_another_page_saved_meanwhile_is_not_overwritten(server, folder):
+    _, first = save(server, WALL)
+    wait(server)
+    status, said = save(server, {**ROOM, "name": "Hall"})
+    assert status == 409 and said["entries"] == [WALL] and said["revision"] == first["revision"]
+    status, _ = save(server, WALL, {**ROOM, "name": "Hall"}, revision=said["revision"])
+    assert status == 200
+    assert len(read_corrections(folder.parents[1] / "rec/corrections.yaml")) == 2
+
+
+def test_each_change_is_in_a_log_with_the_time(server, folder):
+    _, first = save(server, WALL)
+    wait(server)
+    save(server, revision=first["revision"])
+    lines = (folder.parents[1] / "rec/corrections.log").read_text().splitlines()
+    said, taken = map(json.loads, lines)
+    assert said["said"] == WALL and taken["taken back"] == WALL and said["saved"].endswith("+00:00")
+    assert read_corrections(folder.parents[1] / "rec/corrections.yaml") == []
+
+
+def test_the_state_says_what_is_saved_and_which_plan_is_shown(server):
+    assert ask(server, "api/state")[1] == {
+        "entries": [], "revision": "", "page": "abc", "running": False,
+    }  # fmt: skip
+    save(server, WALL)
+    wait(server)
+    assert ask(server, "api/state")[1]["entries"] == [WALL]
+
+
+def test_corrections_of_another_survey_are_refused(server):
+    status, said = save(server, WALL, survey="hall 99")
+    assert status == 400
+    assert said["error"] == f"these corrections are of hall 99, the results are of {SURVEY}"
+
+
+@pytest.mark.parametrize(
+    ("body", "status"),
+    [
+        (b"{", 400), (b"[]", 400), (b"[" * 100000, 400), (b"\xff", 400), (b"null", 400),
+        ({"survey": SURVEY, "revision": "", "entries": 5}, 400),
+        ({"survey": SURVEY, "revision": "", "entries": [5]}, 400),
+        ({"survey": SURVEY, "revision": "", "entries": [WALL | {"at": [1e999, 0]}]}, 400),
+        ({"survey": {"a": 1}, "revision": "", "entries": []}, 400),
+        (b" " * (2**18 + 1), 413),
+    ],
+)  # fmt: skip
+def test_malformed_and_huge_corrections_are_refused(server, folder, body, status):
+    found, said = ask(server, "api/corrections", body)
+    assert found == status and said["error"]
+    assert list((folder.parents[1] / "rec").iterdir()) == []
+
+
+@pytest.mark.parametrize("length", [None, "-1", "1e3", "²", "9" * 40])
+def test_a_length_that_is_none_is_refused(server, length):
+    # http.client writes one where none is given: a chunked body has none
+    headers = {"Content_Length": length} if length else {}
+    if length == "²":
+        headers = {"Content_Length": "\xb2"}
+    body = b"" if length else None
+    method = "POST"
+    origin = f"http://127.0.0.1:{server.server_port}"
+    status, _ = ask(
+        server, "api/corrections", body, method=method,
+        **({"Origin": origin, "Content_Type": "application/json"} | headers),
+    )  # fmt: skip
+    assert status in (411, 413)
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Origin": "http://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Origin": None}, 403),
+        ({"Origin": "https://127.0.0.1"}, 403),
+        ({"Content_Type": "text/plain"}, 415),
+        ({"Content_Type": "application/x-www-form-urlencoded"}, 415),
+    ],
+)
+def test_a_page_of_another_site_saves_nothing(server, folder, headers, status):
+    asked = {"survey": SURVEY, "revision": "", "entries": [WALL]}
+    assert ask(server, "api/corrections", asked, **headers)[0] == status
+    assert list((folder.parents[1] / "rec").iterdir()) == []
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1.evil.example:1", None])
+def test_a_name_that_was_led_here_gets_nothing(server, host):
+    port = server.server_port
+    rebound = host and (f"{host}:{port}" if ":" not in host and "evil" in host else host)
+    assert ask(server, "report.html", Host=rebound) == (403, {"error": "asked by another page"})
+    asked = {"survey": SURVEY, "revision": "", "entries": [WALL]}
+    origin = f"http://{rebound}"
+    assert ask(server, "api/corrections", asked, Host=rebound, Origin=origin)[0] == 403
+
+
+@pytest.mark.parametrize("token", ["", "x", "%00", "report.html", "a" * 32, "ü".encode().hex()])
+def test_without_the_token_nothing_is_shown(server, token):
+    status, said = ask(server, "report.html", token=token)
+    assert status == 403 and "token" in said["error"]
+    assert ask(server, "api/state", token=server.token.swapcase())[0] == 403
+
+
+def test_tokens_differ_and_it_listens_on_this_computer_alone(folder):
+    with serving(folder) as one, serving(folder) as two:
+        assert one.token != two.token and len(one.token) >= 32
+        assert one.server_address[0] == "127.0.0.1"
+
+
+@pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE"])
+def test_nothing_else_may_be_asked(server, method):
+    assert ask(server, "report.html", method=method)[0] == 501
+
+
+def test_no_other_page_may_keep_frame_or_guess_an_answer(server):
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port)
+    connection.request("GET", f"/{server.token}/report.html")
+    headers = connection.getresponse().headers
+    assert headers["X-Frame-Options"] == "DENY" and headers["Cache-Control"] == "no-store"
+    assert (
+        headers["Referrer-Policy"] == "no-referrer" and "Access-Control-Allow-Origin" not in headers
+    )
+    assert headers["X-Content-Type-Options"] == "nosniff"
+
+
+def test_a_page_that_leaves_before_its_answer_is_no_word_worth(server, capfd):
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port)
+    connection.putrequest("POST", f"/{server.token}/api/corrections")
+    connection.endheaders()
+    connection.close()
+    assert ask(server, "report.html")[0] == 200
+    assert capfd.readouterr().err == ""
+
+
+def test_corrections_as_geojson_are_left_alone(server, folder):
+    other = folder.parents[1] / "rec/corrections.geojson"
+    other.write_text("{}")
+    status, said = save(server, WALL)
+    assert status == 400 and "corrections.geojson: is not written here" in said["error"]
+    assert other.read_text() == "{}" and not other.with_suffix(".yaml").exists()
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_that_cannot_be_written_to_is_told(server, folder):
+    place = folder.parents[1] / "rec"
+    place.chmod(0o500)
+    try:
+        status, said = save(server, WALL)
+    finally:
+        place.chmod(0o700)
+    assert status == 400 and "cannot be written" in said["error"]
+
+
+def test_a_lone_recording_has_its_corrections_beside_it(folder):
+    (folder / "source.txt").write_text("rec/my.bag\n")
+    (folder.parents[1] / "rec/my.bag").touch()
+    session = EditSession(folder, [])
+    assert session.place == folder.parents[1] / "rec/my.bag.corrections.yaml"
+
+
+def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):
+    (folder / "source.txt").write_text("the simulated demo\n")
+    (folder / "survey").mkdir()
+    assert EditSession(folder, []).place == folder / "survey/corrections.yaml"
+
+
+@pytest.mark.parametrize(
+    ("break_it", "told"),
+    [
+        (lambda f: (f / "report.html").unlink(), "there is no such report"),
+        (
+            lambda f: (f / "source.txt").unlink(),
+            "source.txt: does not exist; run the dataset again",
+        ),
+        (lambda f: (f / "run.json").write_text("[]"), "does not say how the results were made"),
+        (
+            lambda f: (f.parents[1] / "rec").rename(f / "elsewhere"),
+            "rec: does not exist; put it back",
+        ),
+    ],
+)
+def test_results_that_cannot_be_made_again_are_told(folder, break_it, told):
+    break_it(folder)
+    with pytest.raises(StageError, match=told):
+        EditSession(folder, [])

@@ -1,0 +1,101 @@
+// changes drawn over the plan: at once, and as what they are until the plan is made anew
+(() => {
+  const { plan } = planView;
+  const group = document.getElementById("edits");
+  const ticks = document.getElementById("ticks");
+  const thin = 0.1; // metres that a wall of unknown thickness is drawn with
+  const svg = (tag, attributes, text) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    if (text) made.textContent = text;
+    return made;
+  };
+  const trace = (line) => `M${line.map(([x, y]) => `${x} ${-y}`).join("L")}`;
+  const draw = (css, d, width, more = {}) => {
+    const path = svg("path", { class: css, d, ...more });
+    if (width) path.style.strokeWidth = width;
+    group.append(path);
+    return path;
+  };
+  const thickness = (element) => Number(edits.partOf(element)?.dataset.thickness) || thin;
+  const shape = (element) => edits.partOf(element).getAttribute("d");
+
+  function drawWall(entry, element, number) {
+    const old = element && thickness(element);
+    if (element && entry.action === "keep") return;
+    if (element) draw("cover", shape(element), old + 0.04);
+    if (entry.action === "remove" || entry.kind) return void draw(`gone ${entry.kind ?? ""}`, shape(element));
+    const width = entry.thickness_m || old || thin;
+    draw("solid", entry.line ? trace(entry.line) : shape(element), width, entry.action === "add" ? { "data-entry": number } : {});
+  }
+  function drawOpening(entry, element, number) {
+    if (entry.action === "keep") return;
+    const part = element && edits.partOf(element);
+    const wall = part ? `wall ${part.dataset.wall}` : edits.nearest("wall", edits.middle(entry.line));
+    const width = wall && edits.partOf(wall) ? thickness(wall) : thin;
+    if (part) draw("solid", shape(element), width);
+    if (entry.action === "remove") return;
+    const line = entry.line ?? (entry.width_m ? edits.widen(edits.lineOf(element), entry.width_m) : null);
+    const d = line ? trace(line) : shape(element);
+    draw("cover", d, width + 0.04);
+    draw(`opening ${entry.kind ?? part.dataset.kind}`, d, 0, entry.action === "add" ? { "data-entry": number } : {});
+  }
+  function relabel(element, words, isArea) {
+    const label = plan.querySelector(`[data-label="${element}"]`);
+    if (!label) return;
+    label.children[isArea ? 1 : 0].textContent = words;
+  }
+  const labels = [...plan.querySelectorAll("[data-label]")].map((label) => [label, [...label.children].map((text) => text.textContent)]);
+  function drawRoom(entry, element) {
+    if (entry.action === "split") {
+      draw("cut", trace(entry.line));
+      const room = edits.nearest("room", edits.middle(entry.line));
+      if (room) relabel(room, "areas to be recomputed", true);
+    } else if (entry.action === "merge") {
+      const [room, other] = [entry.at, entry.with].map((place) => edits.nearest("room", place));
+      for (const each of [room, other]) if (each) draw("joined", shape(each));
+      if (room) relabel(room, "area to be recomputed", true);
+      if (other && room) plan.querySelector(`[data-label="${other}"]`).classList.add("off");
+    } else if (entry.action === "remove") {
+      draw("outside", shape(element));
+      relabel(element, "outside", true);
+    } else if (entry.name || entry.number) {
+      relabel(element, [entry.number, entry.name].filter(Boolean).join(" "));
+    }
+  }
+  const drawers = { wall: drawWall, opening: drawOpening, room: drawRoom };
+
+  function redraw() {
+    group.replaceChildren();
+    ticks.replaceChildren();
+    for (const [label, texts] of labels) {
+      label.classList.remove("off");
+      [...label.children].forEach((text, i) => { text.textContent = texts[i]; });
+    }
+    const entries = edits.entries();
+    const answered = new Map();
+    entries.forEach((entry, number) => {
+      const element = edits.elementOf(entry);
+      if (element) answered.set(element, entry);
+      if (!edits.isNew(entry)) return;
+      const isOfPlan = entry.action === "add" || entry.action === "split" || entry.action === "merge";
+      if (element || isOfPlan) drawers[entry.element]?.(entry, element, number);
+    });
+    for (const mark of plan.querySelectorAll(".doubt")) {
+      const entry = answered.get(mark.dataset.element);
+      mark.classList.toggle("answered", entry !== undefined);
+      if (!entry) continue;
+      const text = mark.querySelector("text").cloneNode();
+      text.textContent = entry.action === "keep" ? "✓" : entry.action === "remove" ? "✗" : "✎";
+      const tick = svg("g", { class: "tick" });
+      tick.append(mark.querySelector("circle").cloneNode(), text);
+      ticks.append(tick);
+    }
+    for (const entry of edits.gone()) {
+      const place = entry.line ? edits.middle(entry.line) : entry.at;
+      const note = svg("text", { x: place[0], y: -place[1] }, "taken back");
+      group.append(note);
+    }
+  }
+  edits.onChange(redraw);
+})();
