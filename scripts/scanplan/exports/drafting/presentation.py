@@ -9,6 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.leaves import draw_swing, find_leaves
 from scanplan.exports.drafting.regular_plan import MEASURED, Changes
+from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
@@ -24,7 +25,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, say_count
 from scanplan.plan.tolerances import CORNER_M
 from scanplan.store import schemas
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import Array, BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
 _BESIDE_M = 0.05  # from a room's outline to a pane that bounds it: which has no thickness
@@ -108,7 +109,9 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")
     yield from content.draw_axes(plan)
     yield from content.draw_surfaces(plan)
-    cut_out = overlays.unite_areas([*plan.gaps, *plan.areas])
+    cut_out = overlays.unite_areas(
+        [*overlays.subtract_areas(plan.gaps, _find_backs(plan)), *plan.areas]
+    )
     above: BaseGeometry = shapely.Polygon()
     for kind, is_wanted in (("poche", ~plan.low), ("low", plan.low)):
         bodies = overlays.unite_areas(plan.bodies[is_wanted])
@@ -124,8 +127,25 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         yield content.draw_area("poche", outline, f"column-{number}", "column")
 
 
+def _find_backs(plan: FloorPlan) -> Array:
+    """Return the ground of walls that close openings without leaf or pane behind, (m,)."""
+    lines = floorplan.line_shapes(floorplan.centrelines_m(plan.walls))
+    bodies = plan.bodies
+    is_single = np.asarray(plan.walls["thickness_from"] != MEASURED, bool)
+    backs = np.full(len(plan.gaps), shapely.Polygon(), object)
+    for row in np.flatnonzero(np.isin(plan.openings["type"], BARE)).tolist():
+        within_m = shapely.length(overlays.intersect_lines(lines, plan.gaps[row]))
+        is_back = is_single & (within_m > plan.openings["width_m"][row] / 2)
+        is_back &= np.arange(len(lines)) != plan.hosts[row]
+        backs[row] = overlays.unite_areas(bodies[is_back])
+    return backs
+
+
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings of walls and between rooms; a pane in no wall that bounds no room is none."""
+    """Yield openings of walls and between rooms.
+
+    None is a pane in no wall that bounds no room, nor what has no leaf or pane and leads nowhere.
+    """
     leaves_m = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
     near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, _BESIDE_M)
@@ -136,9 +156,10 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
         floorplan.line_shapes(lines_m), overlays.unite_areas(plan.bodies)
     )
     is_double = shapely.length(behind) > plan.openings["width_m"] / 2
-    is_free = (plan.hosts < 0) & (bounds_none | is_double)
-    for symbol, is_loose in zip(content.list_symbols(plan), is_free.tolist(), strict=True):
-        if is_loose:
+    is_none = (plan.hosts < 0) & (bounds_none | is_double)
+    is_none |= find_nowhere(plan) | ~shapely.is_empty(_find_backs(plan))
+    for symbol, is_left_out in zip(content.list_symbols(plan), is_none.tolist(), strict=True):
+        if is_left_out:
             continue
         if symbol.kind == "door":
             yield draw_swing(symbol, leaves_m)

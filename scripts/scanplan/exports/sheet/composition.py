@@ -96,7 +96,7 @@ def lay_out(
     facts = facts or SheetFacts()
     plan, marks, symbols = shown.plan, shown.marks, shown.symbols
     # the scale bar with the axes takes six rows
-    blocks = [6, len(_list_legend(shown, marks)), len(shown.notes), len(plan.areas)]
+    blocks = [6, len(_list_legend(shown, marks, is_about=True)), len(shown.notes), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
@@ -106,7 +106,25 @@ def lay_out(
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
-    legend = _list_legend(shown, marks)
+    marks += content.draw_corrections(plan, _apart_m(page))
+    space = _open_space(page, marks, symbols)
+    stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
+    on_paper = page.place_shape(shown.uncertain)
+    drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
+    is_stated = _find_stated(symbols, drawn)
+    rooms = [
+        dimension
+        for area in plan.areas[: len(plan.areas) * shown.is_dimensioned]
+        for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
+    ]
+    labels: list[Word] = []
+    if shown.is_labelled:
+        labels += words.label_openings(page, symbols, is_stated, space)
+    if shown.is_dimensioned:
+        labels += words.label_walls(page, plan, space)
+    is_about = any(dimension.word.text.startswith("~") for dimension in [*drawn, *rooms])
+    is_about |= not np.all(plan.rooms["closed"])
+    legend = _list_legend(shown, marks, is_about=is_about)
     blocks[1] = len(legend)
     bar, legend_slots, note_slots, table_slots = fill_slots(page.slots(), blocks) or (
         [],
@@ -120,23 +138,8 @@ def lay_out(
         *title.draw_scale_bar(page, bar[0], facts.north_deg),
         *title.draw_legend(legend, legend_slots),
         *title.draw_notes(shown.notes, note_slots),
+        *title.draw_room_table(stamps, table_slots),
     ]
-    marks += content.draw_corrections(plan, _apart_m(page))
-    space = _open_space(page, marks, symbols)
-    stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
-    beside += title.draw_room_table(stamps, table_slots)
-    on_paper = page.place_shape(shown.uncertain)
-    drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
-    is_stated = _find_stated(symbols, drawn)
-    rooms = [
-        dimension
-        for area in plan.areas[: len(plan.areas) * shown.is_dimensioned]
-        for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
-    ]
-    labels: list[Word] = []
-    if shown.is_labelled:
-        labels += words.label_openings(page, symbols, is_stated, space)
-        labels += words.label_walls(page, plan, space)
     return Sheet(
         clean_text(plan.name),
         page,
@@ -151,7 +154,8 @@ def lay_out(
     )
 
 
-def _list_legend(shown: Shown, marks: list[Mark]) -> list[str]:
+def _list_legend(shown: Shown, marks: list[Mark], *, is_about: bool) -> list[str]:
+    """Return the kinds that a legend explains, with the sign for about where it stands anywhere."""
     plan = shown.plan
     kinds = {symbol.kind for symbol in shown.symbols}
     if shown.is_labelled and list_doubts(plan):
@@ -159,7 +163,7 @@ def _list_legend(shown: Shown, marks: list[Mark]) -> list[str]:
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
-    if not (plan.assumed.is_empty and shown.uncertain.is_empty):
+    if is_about:
         kinds.add("dimension")
     return title.list_legend(marks, kinds)
 
