@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
@@ -11,9 +12,11 @@ import shapely
 import scanplan
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.project.catalogue_file import read_catalogue
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
@@ -28,6 +31,7 @@ def export_files(
     name: str,
     source: str,
     settings: Settings,
+    catalogue: Mapping[str, Any] | None = None,
     version: str = "",
     unwanted: Iterable[FilePath] = (),
 ) -> None:
@@ -47,6 +51,8 @@ def export_files(
         What the dataset's results are made of, see `provenance.identify_source`.
     settings : dict
         See `stage_settings.select_files`.
+    catalogue : dict, optional
+        See `catalogue_file.read_catalogue`; ours if not given.
     version : str
         Of the code.
     unwanted : iterable of path-like
@@ -66,6 +72,10 @@ def export_files(
     )
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": lambda: _format_ifc(drawn, ids, origin),
+        "editable": lambda: _format_editable(
+            drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
+        ),
+        "bcf": lambda: _format_doubts(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
@@ -93,6 +103,28 @@ def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
     from scanplan.exports import ifc
 
     return ifc.format_ifc(plan, ids, origin)
+
+
+def _format_editable(
+    plan: FloorPlan,
+    ids: ElementIds,
+    origin: ModelOrigin,
+    max_change_m: float,
+    catalogue: Mapping[str, Any],
+) -> str:
+    """Return the regular plan as a building model, whose elements have the ids of the measured."""
+    from scanplan.exports import ifc
+
+    regular, _ = draft_plan(plan, make_draft_settings(max_change_m, catalogue))
+    own_ids = element_ids.take_ids(ids, plan, regular)
+    return ifc.format_ifc(regular, own_ids, origin, catalogue=catalogue)
+
+
+def _format_doubts(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> bytes:
+    # its library comes with that of building models
+    from scanplan.exports.data import doubt_topics
+
+    return doubt_topics.format_bcf(plan, ids, origin)
 
 
 def _find_site(plan: FloorPlan, stated: Settings) -> Site:
@@ -167,6 +199,7 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             source=snakemake.params.source,
             settings=snakemake.params.settings,
+            catalogue=snakemake.params.catalogue,
             version=f"{scanplan.__version__}, code {snakemake.params.code}",
             unwanted=snakemake.params.unwanted,
         )

@@ -17,6 +17,8 @@ MOST_NAMED = 8
 
 EXTRAS = {
     "ifcopenshell": "ifc",
+    "bcf": "ifc",
+    "xsdata": "ifc",
     "pye57": "e57",
     "defusedxml": "e57",
     "open3d": "simulate",

@@ -237,6 +237,7 @@ for number, formats in enumerate(chosen_formats()):
             # of an earlier choice, they would stay as they are while the plan changes
             unwanted=files_unasked_for,
             settings=setting(stage_settings.select_files),
+            catalogue=nominal_sizes,
         script:
             "../../scripts/export_files.py"
 

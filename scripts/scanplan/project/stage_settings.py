@@ -177,9 +177,10 @@ def select_presentation(settings: Settings) -> Keywords:
 
 
 def select_files(settings: Settings) -> Keywords:
-    """Return the settings of `export_files`."""
+    """Return the settings of `export_files`, with the name of the catalogue of sizes."""
     export = select_section(settings, "plan", "export")
-    return {key: export[key] for key in (*_ASSUMED, "author", "organisation", "site")}
+    own = ("author", "organisation", "site", *_OF_PRESENTATION)
+    return {key: export[key] for key in (*_ASSUMED, *own)}
 
 
 def select_merging(settings: Settings) -> Keywords:

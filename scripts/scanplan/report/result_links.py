@@ -11,6 +11,8 @@ _WORDS = {
     "presentation.pdf": "regular drawing (PDF)",
     "presentation.svg": "regular drawing (SVG)",
     "presentation.png": "its picture (PNG)",
+    "presentation.ifc": "its building model to go on with (IFC)",
+    "doubts.bcf": "doubts for model viewers (BCF)",
     "presentation.dxf": "its CAD (DXF)",
     "plan.dxf": "CAD (DXF)",
     "plan.ifc": "building model (IFC)",

@@ -8,7 +8,7 @@ from scanplan.types import FloatArray
 
 _ROUNDS = 20  # shares settle in fewer
 _FEWEST_ALIKE = 3  # as many of one size that no catalogue has are a type: two may be so by chance
-_STEP_M = 0.005  # of such a size: makers' are whole and half centimetres
+_STEP_M = 0.01  # of such a size: as fine as openings are measured
 _BUILT_SIGMA_M = 0.005  # plaster and boards make walls of one type differ by as much
 
 
@@ -68,7 +68,7 @@ def find_own_sizes(
 ) -> list[float]:
     """Return sizes of a catalogue, and those that several measured ones share and it has not.
 
-    Their median, to half a centimetre, of those within `allowed_m` of it, the most frequent first;
+    Their median, to a centimetre, of those within `allowed_m` of it, the most frequent first;
     none is nearer to another than what of either might be taken for both.
 
     Examples
@@ -88,4 +88,4 @@ def find_own_sizes(
         alike_m = left_m[np.abs(left_m - left_m[np.argmax(n_alike)]) <= allowed_m]
         size_m = _STEP_M * round(float(np.median(alike_m)) / _STEP_M)
         left_m = left_m[np.abs(left_m - size_m) > allowed_m]
-        sizes.append(round(size_m, 3))
+        sizes.append(round(size_m, 2))
