@@ -12,7 +12,6 @@ import shapely
 import scanplan
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
@@ -113,7 +112,9 @@ def _format_editable(
     catalogue: Mapping[str, Any],
 ) -> str:
     """Return the regular plan as a building model, whose elements have the ids of the measured."""
+    # scipy besides, which takes a second to import
     from scanplan.exports import ifc
+    from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 
     regular, _ = draft_plan(plan, make_draft_settings(max_change_m, catalogue))
     own_ids = element_ids.take_ids(ids, plan, regular)

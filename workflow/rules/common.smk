@@ -38,6 +38,7 @@ from scanplan.project import (
     catalogue_file,
     export_formats,
     stage_settings,
+    words_file,
 )
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
@@ -452,6 +453,15 @@ def nominal_sizes(wildcards):
     """What the catalogue of the job's dataset holds: a size that changes reruns the drawing."""
     settings = DATASETS[wildcards.dataset].settings
     return catalogue_file.read_catalogue(settings["plan"]["export"]["catalogue"])
+
+
+def words_of_receiver(wildcards):
+    """The words and names of layers of the job's dataset, likewise."""
+    export = DATASETS[wildcards.dataset].settings["plan"]["export"]
+    return {
+        "words": words_file.read_words(export["language"]),
+        "layers": words_file.read_layers(export["layers"]),
+    }
 
 
 def source_of_results(wildcards):

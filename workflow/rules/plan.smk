@@ -162,6 +162,7 @@ rule export_plan:
     params:
         code=code_of("export_plan"),
         settings=setting(stage_settings.select_drawing),
+        receiver=words_of_receiver,
     script:
         "../../scripts/export_plan.py"
 
@@ -194,6 +195,7 @@ rule export_presentation:
     params:
         code=code_of("export_presentation"),
         settings=setting(stage_settings.select_presentation),
+        receiver=words_of_receiver,
         catalogue=nominal_sizes,
     script:
         "../../scripts/export_presentation.py"

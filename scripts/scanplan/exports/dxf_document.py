@@ -1,7 +1,7 @@
 """A DXF document before anything is drawn: layers, line types, blocks, style of dimensions."""
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 import ezdxf
@@ -54,9 +54,12 @@ class Scale:
     ----------
     per_m, per_mm : float
         Units for a metre of the building, and for a millimetre on paper.
+    locale : Locale
+        How dimensions are written.
     """
 
     def __init__(self, unit: str, page: Page) -> None:
+        self.locale = page.locale
         self.per_m = 1000.0 if unit == "mm" else 1.0
         self.per_mm = self.per_m / page.mm_per_m
 
@@ -105,14 +108,14 @@ def _add_dimension_style(document: Drawing, scale: Scale) -> None:
     style.dxf.dimtad = 1
     style.dxf.dimtih = 0
     style.dxf.dimtoh = 0
-    style.dxf.dimdec = 2
+    style.dxf.dimdec = scale.locale.decimals
     style.dxf.dimzin = 0
-    style.dxf.dimdsep = ord(".")
+    style.dxf.dimdsep = ord(scale.locale.decimal)
     lines = LAYERS["A-ANNO-DIMS"]
     style.dxf.dimlwd = style.dxf.dimlwe = round(100 * lines.width_mm)
     style.dxf.dimclrd = style.dxf.dimclre = lines.colour
-    # whatever the unit, dimensions are read in metres
-    style.dxf.dimlfac = 1 / scale.per_m
+    # whatever the drawing's unit, dimensions are read in the sheet's
+    style.dxf.dimlfac = scale.locale.per_m / scale.per_m
     style.dxf.dimfxlon = 1
     style.dxf.dimfxl = Paper.EXTENSION * scale.per_mm
     # programs that know no styles of dimensions take the drawing's own values
@@ -142,6 +145,13 @@ def open_stamp_block(document: Drawing, scale: Scale) -> BlockLayout:
         definition = block.add_attdef(tag, (0, 0), height=Letters.SMALL * scale.per_mm)
         definition.is_invisible = True
     return block
+
+
+def rename_layers(document: Drawing, names: Mapping[str, str]) -> None:
+    """Give layers other names, and what lies on them; names of layers that are none are left."""
+    for name, other in names.items():
+        if name in document.layers:
+            document.layers.get(name).rename(other)
 
 
 def format_document(document: Drawing) -> str:

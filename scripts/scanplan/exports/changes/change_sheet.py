@@ -67,7 +67,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         *title.draw_frame(page),
         *title.draw_block(page, _list_values(compared, facts, page)),
         *title.draw_scale_bar(page, bar[0]),
-        *title.draw_legend(legend, legend_slots),
+        *title.draw_legend(legend, legend_slots, page.locale),
         *_draw_table([of.change for of in listed], table_slots),
     ]
     return Sheet(

@@ -13,6 +13,7 @@ from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Symbol, straight
 from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
@@ -54,8 +55,8 @@ def compose_presentation(
     facts, turn_deg
         See `composition.lay_out`.
     """
-    shown = _show_regular(measured, regular, _list_notes(changes))
     stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
+    shown = _show_regular(measured, regular, _list_notes(changes, stated.locale))
     return lay_out(shown, stated, turn_deg=turn_deg)
 
 
@@ -70,8 +71,8 @@ def compose_overview(
 
     None where it has more rooms than a page. The parameters are those of `compose_presentation`.
     """
-    shown = _show_regular(measured, regular, _list_totals(regular))
     stated = replace(facts or SheetFacts(), drawing="Overview, without dimensions", number=2, of=2)
+    shown = _show_regular(measured, regular, _list_totals(regular, stated.locale))
     try:
         return lay_out(
             replace(shown, is_dimensioned=False), stated, turn_deg=turn_deg, names=("A4",)
@@ -197,7 +198,7 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     return overlays.intersect_areas(built, near)
 
 
-def _list_notes(changes: Changes) -> list[str]:
+def _list_notes(changes: Changes, locale: Locale) -> list[str]:
     """Return what has been changed of the plan, and by what rule areas are, in lines."""
     walls = say_count(changes.n_walls, "wall")
     assumed = say_count(changes.n_assumed, "wall")
@@ -205,17 +206,18 @@ def _list_notes(changes: Changes) -> list[str]:
     sentences = [
         f"Of {walls} {changes.n_square} are square to the building, {changes.n_through} in line"
         f" with others, {changes.n_nominal} of nominal thickness.",
-        f"No side of a wall moved by more than {_in_mm(changes.moved_m)}, no wall turned by more"
-        f" than {changes.turned_deg:.1f}° or thickened by more than {_in_mm(changes.thickness_m)}.",
-        f"Openings widened by at most {_in_mm(changes.width_m)}.",
+        f"No side of a wall moved by more than {locale.deviation(changes.moved_m)}, no wall turned"
+        f" by more than {changes.turned_deg:.1f}° or thickened by more than"
+        f" {locale.deviation(changes.thickness_m)}.",
+        f"Openings widened by at most {locale.deviation(changes.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (changes.n_assumed > 0),
         f"{left_out} left out: short walls at no room, slits." * (changes.n_left_out > 0),
         _AREA_RULE,
     ]
-    return _wrap(sentences)
+    return _wrap(sentences, locale)
 
 
-def _list_totals(plan: FloorPlan) -> list[str]:
+def _list_totals(plan: FloorPlan, locale: Locale) -> list[str]:
     """Return how much floor there is and how many doors and windows, in lines."""
     is_closed = np.asarray(plan.rooms["closed"], bool)
     areas_m2 = np.asarray(plan.rooms["area_m2"], float)
@@ -223,20 +225,20 @@ def _list_totals(plan: FloorPlan) -> list[str]:
     sentences: list[str] = []
     for is_of, noun, about in ((is_closed, "closed room", ""), (~is_closed, "open room", "about ")):
         if is_of.any():
-            total = f"{about}{areas_m2[is_of].sum():.1f} m² net"
+            total = f"{about}{locale.area(float(areas_m2[is_of].sum()))} net"
             sentences.append(f"{say_count(int(is_of.sum()), noun)}, {total}.")
     for kind in ("door", "window"):
         sizes, counts = np.unique(np.round(widths_m[kinds == kind], 1), return_counts=True)
-        listed = ", ".join(f"{n} of {size:.1f} m" for size, n in zip(sizes, counts, strict=True))
+        listed = ", ".join(
+            f"{n} of {locale.measure(float(size), 1)}"
+            for size, n in zip(sizes, counts, strict=True)
+        )
         if listed:
             sentences.append(f"{say_count(int(counts.sum()), kind)}: {listed}.")
-    return _wrap([*sentences, _AREA_RULE])
+    return _wrap([*sentences, _AREA_RULE], locale)
 
 
-def _wrap(sentences: Sequence[str]) -> list[str]:
+def _wrap(sentences: Sequence[str], locale: Locale) -> list[str]:
     width_mm = Paper.COLUMN - 6 * Paper.GAP
-    return [line for said in sentences for line in wrap_lines(said, Letters.SMALL, width_mm)]
-
-
-def _in_mm(length_m: float) -> str:
-    return f"{1000 * length_m:.0f} mm"
+    said = [locale.say(sentence) for sentence in sentences if sentence]
+    return [line for words in said for line in wrap_lines(words, Letters.SMALL, width_mm)]

@@ -101,6 +101,7 @@ def lay_out(
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
     page = choose_page(*extent, turn_deg, blocks, least_scale, names=names, around_mm=around_mm)
+    page = replace(page, locale=facts.locale)
     # doors that swing out put the chain before them farther off: room on the other side goes there
     swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
@@ -136,9 +137,9 @@ def lay_out(
         *title.draw_frame(page),
         *title.draw_title_block(page, shown.titled, facts),
         *title.draw_scale_bar(page, bar[0], facts.north_deg),
-        *title.draw_legend(legend, legend_slots),
-        *title.draw_notes(shown.notes, note_slots),
-        *title.draw_room_table(stamps, table_slots),
+        *title.draw_legend(legend, legend_slots, page.locale),
+        *title.draw_notes(shown.notes, note_slots, page.locale),
+        *title.draw_room_table(stamps, table_slots, page.locale),
     ]
     return Sheet(
         clean_text(plan.name),

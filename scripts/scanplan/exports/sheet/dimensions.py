@@ -223,7 +223,7 @@ def _draw_chain(
 
 
 def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:
-    return f"{'~' if is_about else ''}{length_mm / page.mm_per_m:.2f}"
+    return f"{'~' if is_about else ''}{page.locale.length(length_mm / page.mm_per_m)}"
 
 
 def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Candidate]:
