@@ -1,8 +1,6 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +10,7 @@ import shapely
 import scanplan
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.exports.model_origin import ModelOrigin, find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project.catalogue_file import read_catalogue
@@ -62,12 +60,13 @@ def export_files(
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
     ids = _identify_elements(drawn, outputs["ids"], outputs["known"], source)
+    site = find_site(drawn.georeference, settings["site"])
     origin = ModelOrigin(
         author=settings["author"] or "",
         organisation=settings["organisation"] or "",
         version=version or "not stated",
         t_ns=t_ns,
-        site=_find_site(drawn, settings["site"]),
+        site=site,
     )
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": lambda: _format_ifc(drawn, ids, origin),
@@ -75,7 +74,7 @@ def export_files(
             drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
         ),
         "bcf": lambda: _format_doubts(drawn, ids, origin),
-        "glb": lambda: mesh.format_glb(drawn, ids),
+        "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
     }
@@ -94,7 +93,7 @@ def export_files(
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)
-            geopackage.write_geopackage(temporary, layers, t_ns)
+            geopackage.write_geopackage(temporary, layers, t_ns, site)
 
 
 def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
@@ -126,21 +125,6 @@ def _format_doubts(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> byt
     from scanplan.exports.data import doubt_topics
 
     return doubt_topics.format_bcf(plan, ids, origin)
-
-
-def _find_site(plan: FloorPlan, stated: Settings) -> Site:
-    """Return where the plan lies on earth: as its corrections' points say, else as the settings."""
-    site = Site(**stated)
-    measured = plan.georeference
-    if measured is None:
-        return site
-    return replace(
-        site,
-        crs=measured.crs,
-        east_m=measured.east_m,
-        north_m=measured.north_m,
-        turn_deg=math.degrees(measured.rotation_rad),
-    )
 
 
 def _identify_elements(

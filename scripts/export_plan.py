@@ -6,7 +6,8 @@ from typing import Any
 
 from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
-from scanplan.exports.sheet import composition
+from scanplan.exports.model_origin import find_site
+from scanplan.exports.sheet import composition, title
 from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.locale import make_locale
@@ -51,6 +52,7 @@ def export_plan(
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    site = find_site(drawn.georeference, settings["site"])
     facts = summarise_survey(
         evidence,
         project=settings["project"] or "",
@@ -58,17 +60,18 @@ def export_plan(
         version=version,
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
         locale=make_locale(settings["units"], told.get("words")),
+        frame=title.state_frame(site, drawn.georeference),
     )
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)
     figure = drawing.draw_sheet(sheet)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
-    atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
-    cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"))
+    atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence, site))
+    cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
     atomic.write_text(outputs["dxf"], cad)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
-    title = f"Floor plan of {sheet.name}"
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
+    heading = f"Floor plan of {sheet.name}"
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], heading))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))

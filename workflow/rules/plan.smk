@@ -250,6 +250,8 @@ rule export_cloud:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
+        # where reference points place it
+        free=plan_table("free"),
     output:
         cloud="results/{dataset}/cloud.laz",
     log:
@@ -263,6 +265,6 @@ rule export_cloud:
     params:
         code=code_of("export_cloud"),
         stop=section("selection", "stop"),
-        settings=section("plan", "export", "cloud"),
+        settings=setting(stage_settings.select_cloud),
     script:
         "../../scripts/export_cloud.py"

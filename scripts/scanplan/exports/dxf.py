@@ -17,6 +17,7 @@ from ezdxf.layouts.layout import Modelspace, Paperspace
 
 from scanplan.exports import dxf_document
 from scanplan.exports.dxf_document import APPLICATION, Scale
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.exports.sheet.composition import Sheet, surround_symbol
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Dimension, Facts, Mark, Stamp, Symbol, Word
@@ -34,7 +35,12 @@ _ALIGNMENTS = {
 }
 
 
-def format_dxf(sheet: Sheet, unit: str = "mm", layers: Mapping[str, str] | None = None) -> str:
+def format_dxf(
+    sheet: Sheet,
+    unit: str = "mm",
+    layers: Mapping[str, str] | None = None,
+    site: Site = NOWHERE,
+) -> str:
     """Return a sheet as the text of a DXF R2010 file.
 
     The model space holds the plan in the frame of the map: hatched outlines of walls, blocks with
@@ -49,6 +55,8 @@ def format_dxf(sheet: Sheet, unit: str = "mm", layers: Mapping[str, str] | None 
         mm or m: of the model space.
     layers : dict of str to str, optional
         Other names of layers, by ours.
+    site : Site
+        Where the map lies: the model space states it, and stays in the frame of the map.
 
     Returns
     -------
@@ -68,6 +76,7 @@ def format_dxf(sheet: Sheet, unit: str = "mm", layers: Mapping[str, str] | None 
         document.layouts.delete("Layout1")
         state_extent(document, sheet_corners_m(sheet) * scale.per_m)
         dxf_document.rename_layers(document, layers or {})
+        dxf_document.state_place(document, site)
         return dxf_document.format_document(document)
 
 

@@ -1,8 +1,10 @@
 """A DXF document before anything is drawn: layers, line types, blocks, style of dimensions."""
 
 import io
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from html import escape
 
 import ezdxf
 from ezdxf.document import Drawing
@@ -10,6 +12,7 @@ from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import new
 from ezdxf.layouts.blocklayout import BlockLayout
 
+from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import DASHES_MM, LAYERS, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS
@@ -152,6 +155,45 @@ def rename_layers(document: Drawing, names: Mapping[str, str]) -> None:
     for name, other in names.items():
         if name in document.layers:
             document.layers.get(name).rename(other)
+
+
+def state_place(document: Drawing, site: Site) -> None:
+    """State where on earth the model space lies, if that is known, as AutoCAD reads it."""
+    if not site.is_placed:
+        return
+    turn_rad = math.radians(site.turn_deg)
+    document.modelspace().new_geodata().setup_local_grid(
+        design_point=(0, 0),
+        reference_point=(site.east_m, site.north_m),
+        # of the grid, in the frame of the map
+        north_direction=(math.sin(turn_rad), math.cos(turn_rad)),
+        crs=_describe_system(site),
+    )
+
+
+def _describe_system(site: Site) -> str:
+    """Return a system of the Earth as the dictionary of AutoCAD has it."""
+    name = escape(site.crs or "")
+    number = (
+        ""
+        if site.epsg is None
+        else (
+            f'<Alias id="{site.epsg}" type="CoordinateSystem"><ObjectId>{name}</ObjectId>'
+            "<Namespace>EPSG Code</Namespace></Alias>"
+        )
+    )
+    axes = "".join(
+        f"<CoordinateSystemAxis><AxisOrder>{order}</AxisOrder><AxisName>{noun}</AxisName>"
+        f"<AxisAbbreviation>{noun[0]}</AxisAbbreviation>"
+        f"<AxisDirection>{way}</AxisDirection></CoordinateSystemAxis>"
+        for order, noun, way in ((1, "Easting", "east"), (2, "Northing", "north"))
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-16" standalone="no" ?>'
+        '<Dictionary version="1.0" xmlns="http://www.osgeo.org/mapguide/coordinatesystem">'
+        f'<ProjectedCoordinateSystem id="{name}"><Name>{name}</Name>'
+        f'<Axis uom="METER">{axes}</Axis></ProjectedCoordinateSystem>{number}</Dictionary>'
+    )
 
 
 def format_document(document: Drawing) -> str:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet.accuracy import SensorErrors, state_accuracy
 from scanplan.exports.sheet.lettering import (
     clean_text,
@@ -19,7 +20,7 @@ from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
-from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
+from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_to_verify
@@ -57,6 +58,8 @@ class SheetFacts:
         From the map frame's x axis to true north, counter-clockwise; None where not known.
     locale : Locale
         How the sheet is written.
+    frame : str
+        Where the map lies on earth; empty where not known.
     """
 
     project: str = ""
@@ -70,6 +73,7 @@ class SheetFacts:
     drawing: str = "Floor plan, as surveyed"
     north_deg: float | None = None
     locale: Locale = ENGLISH
+    frame: str = ""
 
 
 def summarise_survey(evidence: Columns, **stated: Any) -> SheetFacts:
@@ -87,6 +91,16 @@ def summarise_survey(evidence: Columns, **stated: Any) -> SheetFacts:
     if len(t_ns) == 0:
         return replace(SheetFacts(n_scans=n_scans), **stated)
     return replace(SheetFacts("", "", state_date(int(t_ns.min())), n_scans), **stated)
+
+
+def state_frame(site: Site, measured: GeoReference | None) -> str:
+    """Return in words where a map lies on earth, and how well reference points agree with it."""
+    if not site.is_placed:
+        return ""
+    place = f"origin E {site.east_m:.3f} N {site.north_m:.3f}, x axis {site.turn_deg:.4f}° from E"
+    if measured is None:
+        return f"{site.crs}: {place}"
+    return f"{site.crs}: {place}; residual {1000 * measured.residual_m:.0f} mm"
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -123,7 +137,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
         ],
         [
-            ("Frame", f"map, {turn}; {north}", 2),
+            ("Frame", f"{facts.frame or 'map'}, {turn}; {north}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
         [("Verdict", _state_verdict(plan, page.locale), 3)],
