@@ -8,8 +8,10 @@ import numpy as np
 import shapely
 
 import scanplan
+from scanplan.exports import grid_map
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
 from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.grid_map import GridMap
 from scanplan.exports.model_origin import ModelOrigin, find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
@@ -78,6 +80,11 @@ def export_files(
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
     }
+    for mask, draw, mode in (
+        ("keepout", grid_map.draw_keepout, "trinary"),
+        ("speed", grid_map.draw_speed, "raw"),
+    ):
+        writers |= _write_mask(mask, lambda draw=draw: draw(drawn, settings["map_cell_m"]), mode)
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
@@ -101,6 +108,16 @@ def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
     from scanplan.exports import ifc
 
     return ifc.format_ifc(plan, ids, origin)
+
+
+def _write_mask(
+    name: str, draw: Callable[[], GridMap], mode: str
+) -> dict[str, Callable[[], str | bytes]]:
+    """Return what writes a mask of the map, and the file that nav2 reads it by."""
+    return {
+        f"{name}_pgm": lambda: grid_map.format_pgm(draw()),
+        f"{name}_yaml": lambda: grid_map.format_map_yaml(draw(), f"{name}.pgm", mode),
+    }
 
 
 def _format_editable(

@@ -17,6 +17,11 @@ FILES = {
     "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
     "json": {"json": "plan/rooms.json"},
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
+    "masks": {
+        f"{mask}_{suffix}": f"plan/{mask}.{suffix}"
+        for mask in ("keepout", "speed")
+        for suffix in ("pgm", "yaml")
+    },
     "editable": {"editable": "plan/presentation.ifc"},
     "bcf": {"bcf": "plan/doubts.bcf"},
 }

@@ -12,6 +12,8 @@ _WORDS = {
     "presentation.svg": "regular drawing (SVG)",
     "presentation.png": "its picture (PNG)",
     "presentation.ifc": "its building model to go on with (IFC)",
+    "keepout.pgm": "where a robot keeps out (nav2)",
+    "speed.pgm": "where a robot is slow (nav2)",
     "doubts.bcf": "doubts for model viewers (BCF)",
     "presentation.dxf": "its CAD (DXF)",
     "plan.dxf": "CAD (DXF)",
