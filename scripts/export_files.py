@@ -9,7 +9,14 @@ import shapely
 
 import scanplan
 from scanplan.exports import grid_map
-from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
+from scanplan.exports.data import (
+    element_ids,
+    element_tables,
+    geopackage,
+    mesh,
+    room_graph,
+    wayfinding,
+)
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.grid_map import GridMap
 from scanplan.exports.model_origin import ModelOrigin, find_site
@@ -97,6 +104,7 @@ def export_files(
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
+        layers |= wayfinding.imdf_layers(drawn, rows)
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)

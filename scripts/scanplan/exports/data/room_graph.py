@@ -13,7 +13,8 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
 
 _PLACE = {"frame": "map", "unit": "m"}
-_WHEELCHAIR_M = 0.9  # clear width of doors for wheelchairs (DIN 18040)
+WHEELCHAIR_M = 0.9
+"""Clear width of doors for wheelchairs (DIN 18040)."""
 
 
 def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
@@ -122,7 +123,7 @@ def _list_exits(ways: list[dict[str, Any]], room: int) -> list[dict[str, Any]]:
 def _find_accessible(rooms: list[dict[str, Any]], ways: list[dict[str, Any]]) -> dict[str, Any]:
     """Return which rooms ways that are wide enough join, and lead to from outside."""
     areas_m2 = {room["room"]: room["area_m2"] for room in rooms}
-    wide = [way["rooms"] for way in ways if way["width_m"] >= _WHEELCHAIR_M]
+    wide = [way["rooms"] for way in ways if way["width_m"] >= WHEELCHAIR_M]
     group_of = {room: {room} for room in areas_m2}
     for one, other in wide:
         if one in group_of and other in group_of and group_of[one] is not group_of[other]:
@@ -134,7 +135,7 @@ def _find_accessible(rooms: list[dict[str, Any]], ways: list[dict[str, Any]]) ->
     )
     entered = {room for ends in wide if None in ends for room in ends} & set(areas_m2)
     return {
-        "least_width_m": _WHEELCHAIR_M,
+        "least_width_m": WHEELCHAIR_M,
         "groups": ordered,
         "from_outside": sorted({room for way in entered for room in group_of[way]}),
     }
