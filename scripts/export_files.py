@@ -1,19 +1,28 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
-import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
 
 import scanplan
-from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, room_graph
+from scanplan.exports import grid_map
+from scanplan.exports.data import (
+    element_ids,
+    element_tables,
+    geopackage,
+    mesh,
+    room_graph,
+    wayfinding,
+)
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.exports.grid_map import GridMap
+from scanplan.exports.model_origin import ModelOrigin, find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.project.catalogue_file import read_catalogue
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
@@ -28,6 +37,7 @@ def export_files(
     name: str,
     source: str,
     settings: Settings,
+    catalogue: Mapping[str, Any] | None = None,
     version: str = "",
     unwanted: Iterable[FilePath] = (),
 ) -> None:
@@ -47,6 +57,8 @@ def export_files(
         What the dataset's results are made of, see `provenance.identify_source`.
     settings : dict
         See `stage_settings.select_files`.
+    catalogue : dict, optional
+        See `catalogue_file.read_catalogue`; ours if not given.
     version : str
         Of the code.
     unwanted : iterable of path-like
@@ -57,19 +69,29 @@ def export_files(
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
     ids = _identify_elements(drawn, outputs["ids"], outputs["known"], source)
+    site = find_site(drawn.georeference, settings["site"])
     origin = ModelOrigin(
         author=settings["author"] or "",
         organisation=settings["organisation"] or "",
         version=version or "not stated",
         t_ns=t_ns,
-        site=_find_site(drawn, settings["site"]),
+        site=site,
     )
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": lambda: _format_ifc(drawn, ids, origin),
-        "glb": lambda: mesh.format_glb(drawn, ids),
+        "editable": lambda: _format_editable(
+            drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
+        ),
+        "bcf": lambda: _format_doubts(drawn, ids, origin),
+        "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
     }
+    for mask, draw, mode in (
+        ("keepout", grid_map.draw_keepout, "trinary"),
+        ("speed", grid_map.draw_speed, "raw"),
+    ):
+        writers |= _write_mask(mask, lambda draw=draw: draw(drawn, settings["map_cell_m"]), mode)
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
@@ -82,10 +104,11 @@ def export_files(
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
+        layers |= wayfinding.imdf_layers(drawn, rows)
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)
-            geopackage.write_geopackage(temporary, layers, t_ns)
+            geopackage.write_geopackage(temporary, layers, t_ns, site)
 
 
 def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
@@ -95,19 +118,38 @@ def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
     return ifc.format_ifc(plan, ids, origin)
 
 
-def _find_site(plan: FloorPlan, stated: Settings) -> Site:
-    """Return where the plan lies on earth: as its corrections' points say, else as the settings."""
-    site = Site(**stated)
-    measured = plan.georeference
-    if measured is None:
-        return site
-    return replace(
-        site,
-        crs=measured.crs,
-        east_m=measured.east_m,
-        north_m=measured.north_m,
-        turn_deg=math.degrees(measured.rotation_rad),
-    )
+def _write_mask(
+    name: str, draw: Callable[[], GridMap], mode: str
+) -> dict[str, Callable[[], str | bytes]]:
+    """Return what writes a mask of the map, and the file that nav2 reads it by."""
+    return {
+        f"{name}_pgm": lambda: grid_map.format_pgm(draw()),
+        f"{name}_yaml": lambda: grid_map.format_map_yaml(draw(), f"{name}.pgm", mode),
+    }
+
+
+def _format_editable(
+    plan: FloorPlan,
+    ids: ElementIds,
+    origin: ModelOrigin,
+    max_change_m: float,
+    catalogue: Mapping[str, Any],
+) -> str:
+    """Return the regular plan as a building model, whose elements have the ids of the measured."""
+    # scipy besides, which takes a second to import
+    from scanplan.exports import ifc
+    from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
+
+    regular, _ = draft_plan(plan, make_draft_settings(max_change_m, catalogue))
+    own_ids = element_ids.take_ids(ids, plan, regular)
+    return ifc.format_ifc(regular, own_ids, origin, catalogue=catalogue)
+
+
+def _format_doubts(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> bytes:
+    # its library comes with that of building models
+    from scanplan.exports.data import doubt_topics
+
+    return doubt_topics.format_bcf(plan, ids, origin)
 
 
 def _identify_elements(
@@ -167,6 +209,7 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             source=snakemake.params.source,
             settings=snakemake.params.settings,
+            catalogue=snakemake.params.catalogue,
             version=f"{scanplan.__version__}, code {snakemake.params.code}",
             unwanted=snakemake.params.unwanted,
         )

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
-from scanplan.exports.sheet import composition
+from scanplan.exports.model_origin import find_site
+from scanplan.exports.sheet import composition, title
 from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.lettering import list_unknown
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files
@@ -23,6 +26,7 @@ def export_plan(
     *,
     name: str,
     settings: Settings,
+    receiver: Mapping[str, Any] | None = None,
     version: str = "",
 ) -> None:
     """Write a plan as GeoJSON, DXF, SVG, PDF, PNG and as a map for nav2.
@@ -37,30 +41,37 @@ def export_plan(
     settings : dict
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
         of the map's cells; `turn`, `project` and `storey` of the sheet, see
-        `composition.compose_sheet`; `dxf_unit`, mm or m; `range_offset_sigma_m` and
-        `range_scale_sigma`, see `accuracy.SensorErrors`.
+        `composition.compose_sheet`; `dxf_unit`, mm or m; `units`, see `locale.Locale`;
+        `range_offset_sigma_m` and `range_scale_sigma`, see `accuracy.SensorErrors`.
+    receiver : dict, optional
+        `words` of his language and names of `layers`, see `words_file`; English and ours without.
     version : str
         Of the software, for the title block.
     """
+    told = receiver or {}
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    site = find_site(drawn.georeference, settings["site"])
     facts = summarise_survey(
         evidence,
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
+        locale=make_locale(settings["units"], told.get("words")),
+        frame=title.state_frame(site, drawn.georeference),
     )
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)
     figure = drawing.draw_sheet(sheet)
     grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
-    atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence))
-    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
+    atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence, site))
+    cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
+    atomic.write_text(outputs["dxf"], cad)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
-    title = f"Floor plan of {sheet.name}"
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
+    heading = f"Floor plan of {sheet.name}"
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], heading))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))
@@ -94,5 +105,6 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
+            receiver=snakemake.params.receiver,
             version=code_files.state_version(),
         )

@@ -7,8 +7,10 @@ from typing import Any
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
+from scanplan.exports.model_origin import find_site
 from scanplan.exports.sheet.accuracy import SensorErrors
-from scanplan.exports.sheet.title import summarise_survey
+from scanplan.exports.sheet.locale import make_locale
+from scanplan.exports.sheet.title import state_frame, summarise_survey
 from scanplan.plan import floorplan_files
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
@@ -23,6 +25,7 @@ def export_presentation(
     name: str,
     settings: Settings,
     catalogue: Mapping[str, Any],
+    receiver: Mapping[str, Any] | None = None,
     version: str = "",
 ) -> None:
     """Write a regular plan as SVG, PDF, PNG and DXF, and its walls as a table.
@@ -37,18 +40,24 @@ def export_presentation(
         See `stage_settings.select_presentation`.
     catalogue : dict
         See `catalogue_file.read_catalogue`.
+    receiver : dict, optional
+        As of `export_plan`.
     version : str
         Of the software, for the title block.
     """
+    told = receiver or {}
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     measured = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    site = find_site(measured.georeference, settings["site"])
     facts = summarise_survey(
         tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True),
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
-        north_deg=settings["north_deg"],
+        north_deg=site.north_deg,
+        locale=make_locale(settings["units"], told.get("words")),
+        frame=state_frame(site, measured.georeference),
     )
     drafting = make_draft_settings(settings["max_change_m"], catalogue)
     regular, drafted = draft_plan(measured, drafting)
@@ -61,7 +70,8 @@ def export_presentation(
     title = f"Floor plan of {sheet.name}"
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figures[0]))
-    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
+    cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
+    atomic.write_text(outputs["dxf"], cad)
     columns = {column: regular.walls[column] for column in schemas.PRESENTATION.columns}
     tables.write_table(outputs["walls"], schemas.PRESENTATION, columns, allow_empty=True)
     log.log_line(
@@ -78,5 +88,6 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
             catalogue=snakemake.params.catalogue,
+            receiver=snakemake.params.receiver,
             version=code_files.state_version(),
         )

@@ -5,6 +5,9 @@ import numpy as np
 import pytest
 
 from export_cloud import export_cloud
+from helpers import floorplan_making
+from scanplan.plan.corrections.georeference import format_reference
+from scanplan.plan.floorplan import GeoReference
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
 
@@ -37,8 +40,8 @@ def survey(tmp_path):
     return paths
 
 
-def exported(survey, path, **settings):
-    export_cloud(*survey, path, settings=settings, n_scans=2)
+def exported(survey, path, free=None, **settings):
+    export_cloud(*survey, path, settings={"site": {}} | settings, free=free, n_scans=2)
     return laspy.read(path)
 
 
@@ -53,3 +56,14 @@ def test_all_scans_thinned(survey, tmp_path):
     assert cloud["scan_id"].tolist() == [2, 2, 5, 5, 7, 7]
     assert list(cloud.z) == [0.0] * 6
     assert str(cloud.header.creation_date) == "2023-11-14"
+
+
+def test_reference_points_of_the_plan_place_it(survey, tmp_path):
+    free = tmp_path / "free.parquet"
+    reference = GeoReference("EPSG:25832", 500_000.0, 5_400_000.0, 0.0, 0.01)
+    notes = {"georeference": format_reference(reference)}
+    tables.write_table(free, schemas.FREE, floorplan_making.free(), notes=notes)
+    here = exported(survey, tmp_path / "here.laz", scans="all", cell_m=0.0)
+    placed = exported(survey, tmp_path / "placed.laz", scans="all", cell_m=0.0, free=free)
+    assert np.array(placed.x) == pytest.approx(np.array(here.x) + 500_000, abs=1e-3)
+    assert np.array(placed.y) == pytest.approx(np.array(here.y) + 5_400_000, abs=1e-3)

@@ -14,6 +14,7 @@ from scanplan.store import schemas, tables
 SETTINGS = {
     "assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05,
     "turn": True, "project": None, "storey": None, "dxf_unit": "mm",
+    "units": "m", "site": {},
     "range_offset_sigma_m": 0.01, "range_scale_sigma": 0.0002,
 }  # fmt: skip
 TABLES = {

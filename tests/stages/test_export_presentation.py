@@ -65,7 +65,8 @@ def test_a_second_run_gives_the_same_bytes(files, tmp_path):
 
 
 def test_north_is_drawn_where_it_is_known(tmp_path):
-    drawn = exported(tmp_path, north_deg=90.0)["svg"].read_text()
+    site = SETTINGS["plan"]["export"]["site"] | {"north_deg": 90.0}
+    drawn = exported(tmp_path, site=site)["svg"].read_text()
     assert "north as drawn" in drawn and 'id="axis-N"' in drawn and 'id="axis-x"' not in drawn
 
 

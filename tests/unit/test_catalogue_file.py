@@ -27,7 +27,17 @@ def test_a_catalogue_gives_sizes_by_name(tmp_path):
         "doors": {"leaf": 1.0},
         "windows": {},
         "facade_m": 0.42,
+        "classification": {},
+        "codes": {},
     }
+
+
+def test_lists_have_a_code_and_entries_may_have_their_own(tmp_path):
+    system = "classification: {system: Ours, walls: W, doors: D, windows: G}\n"
+    own = GOOD.replace("size_m: 1}", "size_m: 1, code: D.2}") + system
+    read = read_catalogue(written(tmp_path, own))
+    assert read["classification"] == {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"}
+    assert read["codes"] == {"leaf": "D.2"} and read["doors"] == {"leaf": 1.0}
 
 
 def test_ours_is_read_where_none_is_given():
@@ -51,6 +61,9 @@ def test_ours_is_read_where_none_is_given():
         ("size_m: 1}", "size_m: 1, colour: red}", "doors, entry 1"),
         ("[{name: leaf, size_m: 1}]", "[1.0]", "doors, entry 1"),
         ("facade_m: 0.42", "facade_m: 0", "facade_m"),
+        ("facade_m: 0.42", "facade_m: 0.42\nclassification: {system: X, walls: W}", "windows"),
+        ("facade_m: 0.42", "facade_m: 0.42\nclassification: 3", "classification"),
+        ("size_m: 1}", "size_m: 1, code: ''}", "doors, entry 1: code"),
     ],
 )
 def test_a_mistake_is_named_with_file_and_entry(tmp_path, old, new, named):

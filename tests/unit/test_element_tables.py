@@ -5,10 +5,12 @@ import io
 import numpy as np
 import pandas as pd
 import pytest
+import shapely
 
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports.data import element_ids, element_tables
+from scanplan.store import schemas
 
 
 def tabulated(drawn):
@@ -67,3 +69,15 @@ def test_rooms_have_a_height_where_the_ceiling_was_seen_and_else_a_least_one():
     unseen = tabulated(plan(floor_z_m=0.0))["rooms"]
     assert unseen["height_m"] == [None, None]
     assert unseen["least_height_m"] == [floorplan_making.HEIGHT_M] * 2
+
+
+def test_rooms_state_their_net_area_and_their_ways():
+    column = floorplan_making.furniture([shapely.box(1, 1, 1.5, 1.5)], schemas.COLUMN)
+    drawn = floorplan_making.plan(furniture=column)
+    rooms = element_tables.tabulate_elements(drawn, element_ids.ids_from_places(drawn))["rooms"]
+    assert rooms["net_area_m2"] == [11.75, 9.0] and rooms["area_m2"] == [12.0, 9.0]
+    # an entrance of 1 m and a door of 0.9 m; the window is none
+    assert rooms["n_ways"] == [2, 1] and rooms["widest_way_m"] == [1.0, 0.9]
+    shut = floorplan_making.plan(openings=floorplan_making.openings([]))
+    rooms = element_tables.tabulate_elements(shut, element_ids.ids_from_places(shut))["rooms"]
+    assert rooms["n_ways"] == [0, 0] and rooms["widest_way_m"] == [None, None]

@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 import yaml
 from PIL import Image
 
@@ -102,3 +103,37 @@ def test_a_window_in_a_wall_of_one_known_side_is_no_thicker_than_that():
     at = as_nav2_reads(grid_map.draw_grid_map(plan(openings=openings), 0.05))
     assert [at(x, 1.0) for x in (7.03, 7.12, 7.18)] == [0, 100, -1]
     assert [at(x, 0.2) for x in (7.03, 7.12, 7.18)] == [0, 100, -1]
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        ((2, 1), 0),  # a room's floor
+        ((4.05, 1.5), 0),  # the door between the rooms
+        ((5, 2.5), 100),  # what no ray went over
+        ((1.5, -0.1), 100),  # the window
+        ((-0.1, 1.5), 100),  # the entrance, though rays went over it: it leads outside
+        ((7.6, 1), 100),  # outside
+    ],
+)
+def test_a_robot_keeps_to_floor_that_was_seen_and_does_not_leave(place, value):
+    floor = floorplan_making.free([*floorplan_making.FREE, shapely.box(-0.5, 1.0, 0.1, 2.0)])
+    drawn = plan(free=floor)
+    assert as_nav2_reads(grid_map.draw_grid_map(drawn, 0.05))(-0.1, 1.5) == 0
+    assert as_nav2_reads(grid_map.draw_keepout(drawn, 0.05))(*place) == value
+
+
+def test_a_robot_is_slow_near_doors():
+    grid = grid_map.draw_speed(plan(), 0.05)
+    about = yaml.safe_load(grid_map.format_map_yaml(grid, "speed.pgm", "raw"))
+    image = np.asarray(Image.open(io.BytesIO(grid_map.format_pgm(grid))))
+    x0, y0, _ = about["origin"]
+
+    def percent(x_m, y_m):
+        return image[len(image) - 1 - int((y_m - y0) / 0.05), int((x_m - x0) / 0.05)]
+
+    assert about["mode"] == "raw"
+    # the door between the rooms is at x = 4.05 m, from y = 1 to 1.9 m, in a wall of 0.1 m
+    assert percent(4.05, 1.5) == percent(4.9, 1.5) == percent(3.2, 1.5) == 50
+    assert percent(5.3, 1.5) == percent(2.5, 2.9) == 0
+    assert grid.cells.shape == grid_map.draw_grid_map(plan(), 0.05).cells.shape

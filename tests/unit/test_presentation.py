@@ -138,3 +138,20 @@ def test_curved_walls_stay_as_measured_and_are_drawn_in_arcs(thickness_m):
     # about a quarter of a circle, but for the door
     assert max(abs(path[:, 2]).max() for path in solid) > np.tan(np.radians(60) / 4)
     assert all(np.isfinite(path).all() for path in solid)
+
+
+def test_curved_walls_have_their_radius_beside_them():
+    measured = quarter_disc.quarter(quarter_disc.WALLS)
+    regular, changes = draft_plan(measured, SETTINGS)
+    sheet = compose_presentation(measured, regular, changes)
+    # of the inner side, as it is measured
+    radius_m = measured.walls["arc_radius_m"][0] - measured.walls["thickness_m"][0] / 2
+    assert f"R {radius_m:.2f}" in [word.text for word in sheet.words]
+
+
+def test_the_legend_explains_the_sign_for_about_only_where_it_stands():
+    sign = "~ about, an end is not known"
+    assert sign not in [word.text for word in paper_words(composed())]
+    opened = floorplan_making.rooms()
+    opened["closed"][1] = False
+    assert sign in [word.text for word in paper_words(composed(rooms=opened))]

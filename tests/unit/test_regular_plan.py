@@ -260,3 +260,24 @@ def test_the_same_plan_gives_the_same_bytes():
     for table in ("walls", "openings", "rooms", "faces"):
         for column, values in getattr(one, table).items():
             np.testing.assert_array_equal(values, getattr(other, table)[column])
+
+
+def test_openings_of_one_width_that_no_catalogue_has_are_drawn_alike():
+    doors = [(x, x + width_m) for x, width_m in ((1, 0.741), (2, 0.75), (3, 0.752), (5, 1.3))]
+    rows = [((x0, -0.1, x1, -0.1), 0, "door", 0.0, 2.0, 0, -1) for x0, x1 in doors]
+    plan = floorplan_making.plan(openings=floorplan_making.openings(rows))
+    widths_m = draft_plan(plan, SETTINGS)[0].openings["width_m"]
+    assert widths_m == pytest.approx([0.75, 0.75, 0.75, 1.3])
+    # two may be alike by chance
+    two = floorplan_making.plan(openings=floorplan_making.openings(rows[1:]))
+    assert draft_plan(two, SETTINGS)[0].openings["width_m"] == pytest.approx([0.75, 0.752, 1.3])
+    none = replace(SETTINGS, doors_m=())
+    assert draft_plan(plan, none)[1].width_m == pytest.approx(0)
+
+
+@pytest.mark.parametrize(("gap_m", "is_joined"), [(0.25, True), (0.4, False)])
+def test_a_wall_that_ends_before_another_is_drawn_on_to_it(gap_m, is_joined):
+    # of a wall of 20 cm: 30 cm, and half of its own 10 cm, are near
+    walls = [*FRAME, ((5, 0.1 + gap_m, 5, 6), 0.1)]
+    drawn = centrelines_m(draft_plan(plan_of(walls), SETTINGS)[0].walls)[2, 0]
+    assert drawn == pytest.approx([5, 0 if is_joined else 0.1 + gap_m], abs=1e-6)

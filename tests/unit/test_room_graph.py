@@ -24,6 +24,18 @@ def test_doors_join_rooms_and_windows_do_not():
     }
 
 
+def test_wheelchairs_reach_rooms_through_ways_of_90_cm():
+    # the entrance is 1 m wide, the door between the rooms 0.9 m
+    found = read(plan())["wheelchair"]
+    assert found == {"least_width_m": 0.9, "groups": [[0, 1]], "from_outside": [0, 1]}
+    narrow = floorplan_making.openings()
+    narrow["width_m"][1] = 0.89
+    found = read(plan(openings=narrow))["wheelchair"]
+    # of 12 and of 9 square metres
+    assert found["groups"] == [[0], [1]] and found["from_outside"] == [0]
+    assert read(bare())["wheelchair"]["groups"] == []
+
+
 def test_a_way_has_a_place_in_either_room():
     _, between = read(plan())["ways"]
     left, right = (shapely.Point(place) for place in between["through_m"])

@@ -228,6 +228,19 @@ def test_chains_and_rooms_measure_the_house():
     assert {4.0, 3.0} <= set(measured)
 
 
+def test_an_oblique_facade_in_pieces_is_one_length():
+    # the west side leans by 60 mm a metre, and is traced in three pieces
+    corners = [(0, 0), (5, 0), (5, 4), (-0.24, 4), (-0.18, 3), (-0.03, 0.5)]
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([shapely.Polygon(corners)]),
+    )
+    sheet = composition.compose_sheet(drawn, turn_deg=0.0)
+    measured = [float(d.word.text) for d in sheet.dimensions if d.line_m[:, 0].max() < -0.3]
+    assert measured == [4.0]
+
+
 def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
     """The small room's north side was not seen, nor its east side north of 1.5 m."""
     north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)

@@ -39,6 +39,7 @@ from scanplan.project import (
     export_formats,
     stage_settings,
     tolerance_file,
+    words_file,
 )
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
@@ -461,6 +462,15 @@ def limits_of_design(wildcards):
     """What the table of tolerances of the job's dataset holds: a limit that changes reruns what it judges."""
     settings = DATASETS[wildcards.dataset].settings
     return tolerance_file.read_tolerances(settings["plan"]["design"]["tolerances"])
+
+
+def words_of_receiver(wildcards):
+    """The words and names of layers of the job's dataset, likewise."""
+    export = DATASETS[wildcards.dataset].settings["plan"]["export"]
+    return {
+        "words": words_file.read_words(export["language"]),
+        "layers": words_file.read_layers(export["layers"]),
+    }
 
 
 def source_of_results(wildcards):

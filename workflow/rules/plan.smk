@@ -162,6 +162,7 @@ rule export_plan:
     params:
         code=code_of("export_plan"),
         settings=setting(stage_settings.select_drawing),
+        receiver=words_of_receiver,
     script:
         "../../scripts/export_plan.py"
 
@@ -194,6 +195,7 @@ rule export_presentation:
     params:
         code=code_of("export_presentation"),
         settings=setting(stage_settings.select_presentation),
+        receiver=words_of_receiver,
         catalogue=nominal_sizes,
     script:
         "../../scripts/export_presentation.py"
@@ -237,6 +239,7 @@ for number, formats in enumerate(chosen_formats()):
             # of an earlier choice, they would stay as they are while the plan changes
             unwanted=files_unasked_for,
             settings=setting(stage_settings.select_files),
+            catalogue=nominal_sizes,
         script:
             "../../scripts/export_files.py"
 
@@ -247,6 +250,8 @@ rule export_cloud:
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
+        # where reference points place it
+        free=plan_table("free"),
     output:
         cloud="results/{dataset}/cloud.laz",
     log:
@@ -260,6 +265,6 @@ rule export_cloud:
     params:
         code=code_of("export_cloud"),
         stop=section("selection", "stop"),
-        settings=section("plan", "export", "cloud"),
+        settings=setting(stage_settings.select_cloud),
     script:
         "../../scripts/export_cloud.py"

@@ -1,6 +1,7 @@
 """The sheet of a plan as DXF, for CAD programs."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from ezdxf.layouts.layout import Modelspace, Paperspace
 
 from scanplan.exports import dxf_document
 from scanplan.exports.dxf_document import APPLICATION, Scale
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.exports.sheet.composition import Sheet, surround_symbol
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Dimension, Facts, Mark, Stamp, Symbol, Word
@@ -33,7 +35,12 @@ _ALIGNMENTS = {
 }
 
 
-def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
+def format_dxf(
+    sheet: Sheet,
+    unit: str = "mm",
+    layers: Mapping[str, str] | None = None,
+    site: Site = NOWHERE,
+) -> str:
     """Return a sheet as the text of a DXF R2010 file.
 
     The model space holds the plan in the frame of the map: hatched outlines of walls, blocks with
@@ -46,6 +53,10 @@ def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
     ----------
     unit : str
         mm or m: of the model space.
+    layers : dict of str to str, optional
+        Other names of layers, by ours.
+    site : Site
+        Where the map lies: the model space states it, and stays in the frame of the map.
 
     Returns
     -------
@@ -64,6 +75,8 @@ def format_dxf(sheet: Sheet, unit: str = "mm") -> str:
         draw_layout(document, "Sheet", sheet, scale)
         document.layouts.delete("Layout1")
         state_extent(document, sheet_corners_m(sheet) * scale.per_m)
+        dxf_document.rename_layers(document, layers or {})
+        dxf_document.state_place(document, site)
         return dxf_document.format_document(document)
 
 
@@ -165,10 +178,20 @@ class _Plan:
             angle=float(np.degrees(np.arctan2(y, x))),
             location=self._point(dimension.word.place),
             dimstyle=dxf_document.DIMENSIONS,
+            text=self._state_length(dimension.word.text),
             override={"dimse1": is_bare, "dimse2": is_bare},
             dxfattribs={"layer": STYLES["dimension"].layer},
         )
         made.render()
+
+    def _state_length(self, text: str) -> str:
+        """Return the text of a dimension: what CAD measures, with the sign for about before it.
+
+        Of feet and inches as it stands on the sheet, which not every program writes alike.
+        """
+        if self._page.locale.is_imperial:
+            return text
+        return "~<>" if text.startswith("~") else "<>"
 
     def _point(self, place_m: FloatArray) -> tuple[float, float]:
         x, y = (place_m * self._scale.per_m).tolist()

@@ -1,8 +1,10 @@
 """A DXF document before anything is drawn: layers, line types, blocks, style of dimensions."""
 
 import io
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from html import escape
 
 import ezdxf
 from ezdxf.document import Drawing
@@ -10,6 +12,7 @@ from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import new
 from ezdxf.layouts.blocklayout import BlockLayout
 
+from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import DASHES_MM, LAYERS, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS
@@ -54,9 +57,12 @@ class Scale:
     ----------
     per_m, per_mm : float
         Units for a metre of the building, and for a millimetre on paper.
+    locale : Locale
+        How dimensions are written.
     """
 
     def __init__(self, unit: str, page: Page) -> None:
+        self.locale = page.locale
         self.per_m = 1000.0 if unit == "mm" else 1.0
         self.per_mm = self.per_m / page.mm_per_m
 
@@ -105,14 +111,14 @@ def _add_dimension_style(document: Drawing, scale: Scale) -> None:
     style.dxf.dimtad = 1
     style.dxf.dimtih = 0
     style.dxf.dimtoh = 0
-    style.dxf.dimdec = 2
+    style.dxf.dimdec = scale.locale.decimals
     style.dxf.dimzin = 0
-    style.dxf.dimdsep = ord(".")
+    style.dxf.dimdsep = ord(scale.locale.decimal)
     lines = LAYERS["A-ANNO-DIMS"]
     style.dxf.dimlwd = style.dxf.dimlwe = round(100 * lines.width_mm)
     style.dxf.dimclrd = style.dxf.dimclre = lines.colour
-    # whatever the unit, dimensions are read in metres
-    style.dxf.dimlfac = 1 / scale.per_m
+    # whatever the drawing's unit, dimensions are read in the sheet's
+    style.dxf.dimlfac = scale.locale.per_m / scale.per_m
     style.dxf.dimfxlon = 1
     style.dxf.dimfxl = Paper.EXTENSION * scale.per_mm
     # programs that know no styles of dimensions take the drawing's own values
@@ -142,6 +148,52 @@ def open_stamp_block(document: Drawing, scale: Scale) -> BlockLayout:
         definition = block.add_attdef(tag, (0, 0), height=Letters.SMALL * scale.per_mm)
         definition.is_invisible = True
     return block
+
+
+def rename_layers(document: Drawing, names: Mapping[str, str]) -> None:
+    """Give layers other names, and what lies on them; names of layers that are none are left."""
+    for name, other in names.items():
+        if name in document.layers:
+            document.layers.get(name).rename(other)
+
+
+def state_place(document: Drawing, site: Site) -> None:
+    """State where on earth the model space lies, if that is known, as AutoCAD reads it."""
+    if not site.is_placed:
+        return
+    turn_rad = math.radians(site.turn_deg)
+    document.modelspace().new_geodata().setup_local_grid(
+        design_point=(0, 0),
+        reference_point=(site.east_m, site.north_m),
+        # of the grid, in the frame of the map
+        north_direction=(math.sin(turn_rad), math.cos(turn_rad)),
+        crs=_describe_system(site),
+    )
+
+
+def _describe_system(site: Site) -> str:
+    """Return a system of the Earth as the dictionary of AutoCAD has it."""
+    name = escape(site.crs or "")
+    number = (
+        ""
+        if site.epsg is None
+        else (
+            f'<Alias id="{site.epsg}" type="CoordinateSystem"><ObjectId>{name}</ObjectId>'
+            "<Namespace>EPSG Code</Namespace></Alias>"
+        )
+    )
+    axes = "".join(
+        f"<CoordinateSystemAxis><AxisOrder>{order}</AxisOrder><AxisName>{noun}</AxisName>"
+        f"<AxisAbbreviation>{noun[0]}</AxisAbbreviation>"
+        f"<AxisDirection>{way}</AxisDirection></CoordinateSystemAxis>"
+        for order, noun, way in ((1, "Easting", "east"), (2, "Northing", "north"))
+    )
+    return (
+        '<?xml version="1.0" encoding="UTF-16" standalone="no" ?>'
+        '<Dictionary version="1.0" xmlns="http://www.osgeo.org/mapguide/coordinatesystem">'
+        f'<ProjectedCoordinateSystem id="{name}"><Name>{name}</Name>'
+        f'<Axis uom="METER">{axes}</Axis></ProjectedCoordinateSystem>{number}</Dictionary>'
+    )
 
 
 def format_document(document: Drawing) -> str:

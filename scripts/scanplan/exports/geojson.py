@@ -1,4 +1,4 @@
-"""The plan as GeoJSON, in the local metres of the survey."""
+"""The plan as GeoJSON, in metres of the survey's map, or of the system that it lies in."""
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Columns
 
@@ -30,7 +31,7 @@ Feature = dict[str, Any]
 """A GeoJSON feature."""
 
 
-def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
+def format_geojson(plan: FloorPlan, evidence: Columns | None = None, site: Site = NOWHERE) -> str:
     """Return a plan as the text of a GeoJSON FeatureCollection, one feature a line.
 
     Parameters
@@ -38,6 +39,8 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
     evidence : dict of str to (n,) array, optional
         The columns of `schemas.EVIDENCE`: a wall's feature lists the scans that show it, and when
         they were taken.
+    site : Site
+        Where the map lies: coordinates are in its system, the map's where it is in none.
 
     Returns
     -------
@@ -62,7 +65,27 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None) -> str:
         *_polygon_features("room", plan.rooms),
         *_polygon_features("furniture", plan.furniture),
     ]
-    return format_collection(plan.name, features)
+    if not site.is_placed:
+        return format_collection(plan.name, features)
+    name = site.crs if site.epsg is None else f"urn:ogc:def:crs:EPSG::{site.epsg}"
+    stated = {"crs": {"type": "name", "properties": {"name": name}}}
+    note = f"Coordinates are metres in {site.crs}, east and north, not longitude and latitude."
+    placed = (_place_feature(feature, site) for feature in features)
+    return format_collection(plan.name, placed, **stated, note=note)
+
+
+def _place_feature(feature: Feature, site: Site) -> Feature:
+    """Return a feature in the system of a site, its normals turned with it."""
+    shape = site.place_shapes(np.array([shapely.from_geojson(json.dumps(feature["geometry"]))]))[0]
+    placed = make_feature(str(feature["id"]), shape, feature["properties"])
+    normal = [feature["properties"].get(name) for name in _NORMALS]
+    if None not in normal:
+        ahead_m = site.place(np.array([(0.0, 0.0), normal]))
+        turned = (
+            round_value(value, _NORMAL_DIGITS) for value in (ahead_m[1] - ahead_m[0]).tolist()
+        )
+        placed["properties"] |= dict(zip(_NORMALS, turned, strict=True))
+    return placed
 
 
 def format_collection(name: str, features: Iterable[Feature], **stated: object) -> str:

@@ -6,10 +6,10 @@ from enum import IntEnum
 import numpy as np
 import shapely
 
-from scanplan.geometry import bitmap
+from scanplan.geometry import bitmap, overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.5  # around all that is known: room for a planner's inflation of obstacles
 _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
@@ -17,13 +17,17 @@ _MOST_CELLS = 64_000_000  # a robot's memory: 64 MB, 400 m x 400 m at 5 cm
 # take the unknown for free
 _MAP_YAML = """\
 image: {image}
-mode: trinary
+mode: {mode}
 resolution: {resolution_m:g}
 origin: [{x_m:g}, {y_m:g}, 0]
 negate: 0
 occupied_thresh: 0.65
 free_thresh: 0.1
 """
+
+
+_SLOW_M = 1.0  # around doors and passages: from where a person behind them is seen late
+_SLOW_PERCENT = 50  # of the greatest speed: halves the way to stop by three quarters
 
 
 class Grey(IntEnum):
@@ -76,16 +80,62 @@ def draw_grid_map(plan: FloorPlan, resolution_m: float) -> GridMap:
     return GridMap(np.ascontiguousarray(cells[::-1]), grid.cell_m, (x_m, y_m))
 
 
+def draw_keepout(plan: FloorPlan, resolution_m: float) -> GridMap:
+    """Draw where a robot is to keep out of: all but floor that rays went over, and ways outside.
+
+    Those are doors and passages to where no scan shows a room. Of `Grey`, on the cells of
+    `draw_grid_map`: what nav2's keepout filter takes for occupied.
+    """
+    grid = draw_grid_map(plan, resolution_m)
+    cells = np.where(grid.cells == Grey.FREE, Grey.FREE, Grey.OCCUPIED).astype(np.uint8)
+    openings = plan.openings
+    is_out = np.isin(openings["type"], floorplan.WAYS)
+    is_out &= (openings["room_a"] < 0) | (openings["room_b"] < 0)
+    cells[_fill_around(plan, grid, is_out, 0.0)] = Grey.OCCUPIED
+    return GridMap(cells, grid.resolution_m, grid.origin_m)
+
+
+def draw_speed(plan: FloorPlan, resolution_m: float) -> GridMap:
+    """Draw where a robot is to be slow: near doors and passages.
+
+    Cells are percent of its greatest speed, 0 where it is not limited, as nav2's speed filter
+    reads them (type 1), on the cells of `draw_grid_map`.
+    """
+    grid = draw_grid_map(plan, resolution_m)
+    cells = np.zeros_like(grid.cells)
+    is_way = np.isin(plan.openings["type"], floorplan.WAYS)
+    cells[_fill_around(plan, grid, is_way, _SLOW_M)] = _SLOW_PERCENT
+    return GridMap(cells, grid.resolution_m, grid.origin_m)
+
+
+def _fill_around(
+    plan: FloorPlan, grid: GridMap, is_wanted: BoolArray, around_m: float
+) -> BoolArray:
+    """Return which cells lie within the walls of openings, or so far around these."""
+    low_m = np.array(grid.origin_m)
+    high_m = low_m + grid.resolution_m * np.array(grid.cells.shape[::-1])
+    around = overlays.buffer_shapes(plan.gaps[is_wanted], around_m)
+    # filling counts edges from the left of the grid, so none may lie beyond it
+    grown = overlays.clip_areas(around, *low_m.tolist(), *high_m.tolist())
+    under = bitmap.Grid(low_m, grid.resolution_m, grid.cells.shape)
+    return bitmap.fill_polygons(np.asarray(grown, object), under)[::-1]
+
+
 def format_pgm(grid: GridMap) -> bytes:
     """Return the grid's cells as the bytes of a binary PGM image."""
     rows, columns = grid.cells.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + grid.cells.tobytes()
 
 
-def format_map_yaml(grid: GridMap, image: str) -> str:
-    """Return the text of the YAML file by which nav2's map server reads the image of that name."""
+def format_map_yaml(grid: GridMap, image: str, mode: str = "trinary") -> str:
+    """Return the text of the YAML file by which nav2's map server reads the image of that name.
+
+    `mode` raw takes grey values for what they are, as those of `draw_speed`.
+    """
     x_m, y_m = grid.origin_m
-    return _MAP_YAML.format(image=image, resolution_m=grid.resolution_m, x_m=x_m, y_m=y_m)
+    return _MAP_YAML.format(
+        image=image, mode=mode, resolution_m=grid.resolution_m, x_m=x_m, y_m=y_m
+    )
 
 
 def _extent_m(plan: FloorPlan, floor: Array) -> tuple[FloatArray, FloatArray]:

@@ -1,9 +1,12 @@
 """The plan as a building model: IFC4, one storey."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from scanplan.exports import envelope
 from scanplan.exports.data import element_ids
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.ifc_elements import columns, joints, openings, spaces, walls
+from scanplan.exports.ifc_elements import columns, furniture, joints, openings, spaces, walls
 from scanplan.exports.ifc_elements.storey_plan import StoreyPlan
 from scanplan.exports.ifc_model import IfcModel
 from scanplan.exports.model_origin import ModelOrigin
@@ -11,7 +14,11 @@ from scanplan.plan.floorplan import FloorPlan
 
 
 def format_ifc(
-    plan: FloorPlan, ids: ElementIds | None = None, origin: ModelOrigin | None = None
+    plan: FloorPlan,
+    ids: ElementIds | None = None,
+    origin: ModelOrigin | None = None,
+    *,
+    catalogue: Mapping[str, Any] | None = None,
 ) -> str:
     """Return a plan as the text of an IFC4 file in metres.
 
@@ -27,6 +34,11 @@ def format_ifc(
         The GlobalIds of walls, openings and rooms; those that follow from their places alone by
         default.
     origin : ModelOrigin, optional
+    catalogue : mapping, optional
+        Of a regular plan, see `regular_plan.draft_plan` and `catalogue_file.read_catalogue`: the
+        model is for a modeller to go on with. It has the catalogue's types with their codes, by
+        how much each element differs from what was measured, symbols in plan, how doors open, and
+        furniture.
 
     Returns
     -------
@@ -35,10 +47,10 @@ def format_ifc(
         name and from the elements that it belongs to.
     """
     floor_m, _ = plan.storey_m
-    model = IfcModel(plan.name, floor_m, origin or ModelOrigin())
-    storey = StoreyPlan(
-        plan, ids or element_ids.ids_from_places(plan), envelope.find_external_walls(plan)
-    )
+    is_editable = catalogue is not None
+    model = IfcModel(plan.name, floor_m, origin or ModelOrigin(), is_editable=is_editable)
+    external = envelope.find_external_walls(plan)
+    storey = StoreyPlan(plan, ids or element_ids.ids_from_places(plan), external, catalogue)
     _add_storey(model, storey)
     return model.text()
 
@@ -51,7 +63,8 @@ def _add_storey(model: IfcModel, storey: StoreyPlan) -> None:
     ceilings = spaces.add_ceilings(model, storey, rooms)
     fillings = [opening.filling for opening in drawn_openings if opening.filling is not None]
     drawn_columns = columns.add_columns(model, storey)
-    model.contain([*drawn_walls, *fillings, *drawn_columns, *floors, *ceilings])
+    pieces = furniture.add_furniture(model, storey) if model.is_editable else []
+    model.contain([*drawn_walls, *fillings, *drawn_columns, *pieces, *floors, *ceilings])
     model.aggregate(model.storey, rooms)
     joints.connect_walls(model, storey, drawn_walls)
     joints.bound_spaces(model, storey, rooms, drawn_walls, drawn_openings)

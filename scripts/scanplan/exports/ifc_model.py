@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_colours import read_colour
@@ -19,10 +20,12 @@ from scanplan.geometry.arcs import NO_CIRCLES, SAGITTA_M, bend_path, middle_of_b
 from scanplan.types import Array, FloatArray
 
 _APPLICATION = "scanplan"
-_VIEW = "ViewDefinition [ReferenceView_V1.2]"  # buildingSMART's view for coordination
+_REFERENCE = "ViewDefinition [ReferenceView_V1.2]"  # buildingSMART's view for coordination
+_TRANSFER = "ViewDefinition [DesignTransferView_V1.0]"  # likewise for going on with a model
 
 _RELATED = {
     "IfcRelAggregates": "RelatedObjects",
+    "IfcRelAssociatesClassification": "RelatedObjects",
     "IfcRelAssociatesMaterial": "RelatedObjects",
     "IfcRelCoversSpaces": "RelatedCoverings",
     "IfcRelDefinesByProperties": "RelatedObjects",
@@ -45,19 +48,28 @@ class IfcModel:
     ids : set of str
         GlobalIds in use.
     origin : ModelOrigin
+    is_editable : bool
+        Whether it is for a modeller to go on with, and not to look at alone.
     body, axis : entity
         The contexts of solids and of lines that products run along.
+    footprint : entity or None
+        The context of symbols in plan, of what is editable.
     storey : entity
         The IfcBuildingStorey; products are placed relative to its `ObjectPlacement`, whose z is 0
         at the floor.
     """
 
-    def __init__(self, name: str, floor_m: float, origin: ModelOrigin) -> None:
+    def __init__(
+        self, name: str, floor_m: float, origin: ModelOrigin, *, is_editable: bool = False
+    ) -> None:
         self.name = name
+        self.is_editable = is_editable
         self.origin = origin
         self.file = ifcopenshell.file(schema="IFC4")
         self.ids: set[str] = set()
         self._styles: dict[str, entity_instance] = {}
+        self._systems: dict[str, entity_instance] = {}
+        self._codes: dict[tuple[str, str], entity_instance] = {}
         self._history = self._owner_history()
         units = self._units()
         context = self._contexts()
@@ -186,14 +198,53 @@ class IfcModel:
         solids: Sequence[entity_instance],
         axis: FloatArray | None = None,
         curve: entity_instance | None = None,
+        symbol: Sequence[entity_instance] = (),
     ) -> entity_instance:
-        """Return a product's shape: solids, and the line (n, 2) or curve it runs along, if any."""
+        """Return a product's shape: solids, and the line (n, 2) or curve it runs along, if any.
+
+        `symbol` has the curves that it is drawn with in plan, of an editable model.
+        """
         bodies = self.new("IfcShapeRepresentation", self.body, "Body", "SweptSolid", solids)
-        if axis is None:
-            return self.new("IfcProductDefinitionShape", None, None, [bodies])
-        line = self._polyline(axis) if curve is None else curve
-        along = self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line])
-        return self.new("IfcProductDefinitionShape", None, None, [along, bodies])
+        shapes = [bodies]
+        if axis is not None:
+            line = self.polyline(axis) if curve is None else curve
+            along = self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line])
+            shapes = [along, bodies]
+        if self.footprint is not None and symbol:
+            drawn = [self.new("IfcGeometricCurveSet", symbol)]
+            shapes.append(
+                self.new(
+                    *("IfcShapeRepresentation", self.footprint, "FootPrint"),
+                    *("GeometricCurveSet", drawn),
+                )
+            )
+        return self.new("IfcProductDefinitionShape", None, None, shapes)
+
+    def outline(
+        self, area: BaseGeometry, circles_m: FloatArray = NO_CIRCLES
+    ) -> list[entity_instance]:
+        """Return the curves around an area (local x, y) in plan; none of a model to look at."""
+        if not self.is_editable:
+            return []
+        rings = shapely.get_rings(shapely.get_parts(area))
+        return [self._outline(shapely.get_coordinates(ring), circles_m) for ring in rings]
+
+    def classify(self, products: Sequence[entity_instance], system: str, code: str) -> None:
+        """Give products a code of a system of classification."""
+        if system not in self._systems:
+            self._systems[system] = self.file.create_entity("IfcClassification", Name=system)
+        if (system, code) not in self._codes:
+            self._codes[system, code] = self.file.create_entity(
+                "IfcClassificationReference",
+                Identification=code,
+                Name=code,
+                ReferencedSource=self._systems[system],
+            )
+        self.join(
+            "IfcRelAssociatesClassification",
+            products,
+            RelatingClassification=self._codes[system, code],
+        )
 
     def aggregate(self, whole: entity_instance, parts: Sequence[entity_instance]) -> None:
         """Make parts the parts of a whole."""
@@ -250,7 +301,8 @@ class IfcModel:
     def text(self) -> str:
         """Return the file's text; its time is the survey's, not that of writing."""
         header = self.file.header
-        header.file_description.description = (_VIEW,)
+        view = _TRANSFER if self.is_editable else _REFERENCE
+        header.file_description.description = (view,)
         header.file_name.name = _plain(self.name)
         header.file_name.time_stamp = self._surveyed_at.strftime("%Y-%m-%dT%H:%M:%S")
         header.file_name.author = (_plain(self.origin.author),)
@@ -300,6 +352,9 @@ class IfcModel:
         self._georeference(whole, self.origin.site)
         self.body = self._subcontext(whole, "Body", "MODEL_VIEW")
         self.axis = self._subcontext(whole, "Axis", "GRAPH_VIEW")
+        self.footprint = (
+            self._subcontext(whole, "FootPrint", "PLAN_VIEW") if self.is_editable else None
+        )
         return whole
 
     def _georeference(self, context: entity_instance, site: Site) -> None:
@@ -358,7 +413,7 @@ class IfcModel:
     def _connection(self, axes: entity_instance, face: Polygon) -> entity_instance:
         """Return a face in the plane of two axes as what connects two elements."""
         outer, *inner = [
-            self._polyline(shapely.get_coordinates(ring)) for ring in shapely.get_rings(face)
+            self.polyline(shapely.get_coordinates(ring)) for ring in shapely.get_rings(face)
         ]
         plane = self.new("IfcPlane", axes)
         surface = self.new("IfcCurveBoundedPlane", plane, outer, inner)
@@ -367,11 +422,16 @@ class IfcModel:
     def _outline(self, points_m: FloatArray, circles_m: FloatArray) -> entity_instance:
         """Return a closed line through points, in arcs where it follows circles."""
         path = bend_path(points_m, circles_m, SAGITTA_M)
-        if not path[:, 2].any():
-            return self._polyline(points_m)
-        corners = path[:-1, :2].tolist()
+        return self.path(path) if path[:, 2].any() else self.polyline(points_m)
+
+    def path(self, path: FloatArray) -> entity_instance:
+        """Return a line through corners (n, 3) with bulges, closed if it ends where it began."""
+        is_closed = bool((path[0, :2] == path[-1, :2]).all())
+        n_corners = len(path) - is_closed
+        corners = path[:n_corners, :2].tolist()
         segments = []
-        for row, (begin, end) in enumerate(pairwise([*range(1, len(path)), 1])):
+        numbers = [*range(1, n_corners + 1), *([1] if is_closed else [])]
+        for row, (begin, end) in enumerate(pairwise(numbers)):
             if path[row, 2]:
                 corners.append(middle_of_bulge(path[row : row + 2]).tolist())
                 segments.append(self.new("IfcArcIndex", (begin, len(corners), end)))
@@ -380,7 +440,8 @@ class IfcModel:
         points = self.new("IfcCartesianPointList2D", corners)
         return self.new("IfcIndexedPolyCurve", points, segments, False)
 
-    def _polyline(self, points_m: Array) -> entity_instance:
+    def polyline(self, points_m: Array) -> entity_instance:
+        """Return a line through points (n, 2)."""
         return self.new("IfcPolyline", [self.point(xy) for xy in points_m.tolist()])
 
     def _define(self, product: entity_instance, definition: entity_instance) -> None:

@@ -9,6 +9,7 @@ COLOURS: Mapping[str, str] = {
     "column": "#d9d4ccff",
     "inferred wall": "#b3c7e0ff",
     "to verify": "#f29933ff",
+    "furniture": "#b8a58aff",
     "door": "#996b42ff",
     "window": "#8cc7e666",
     "glass": "#8cc7e666",

@@ -1,6 +1,14 @@
 """Who made a building model, when it was surveyed, and where it lies."""
 
-from dataclasses import dataclass, field
+import math
+import re
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import shapely
+
+from scanplan.plan.floorplan import GeoReference
+from scanplan.types import Array, FloatArray, Settings
 
 
 @dataclass(frozen=True)
@@ -25,6 +33,49 @@ class Site:
     height_m: float = 0.0
     turn_deg: float = 0.0
     north_deg: float | None = None
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether it is known where the map lies."""
+        return self.crs is not None
+
+    @property
+    def epsg(self) -> int | None:
+        """The number of its system in the EPSG's registry; None of another one."""
+        found = re.fullmatch(r"EPSG:(\d+)", self.crs or "")
+        return int(found[1]) if found else None
+
+    def place(self, xy_m: FloatArray) -> FloatArray:
+        """Return places (..., 2) of the map in the system: east and north; as they are of none."""
+        if not self.is_placed:
+            return xy_m
+        cos, sin = math.cos(math.radians(self.turn_deg)), math.sin(math.radians(self.turn_deg))
+        return xy_m @ np.array([(cos, sin), (-sin, cos)]) + (self.east_m, self.north_m)
+
+    def place_shapes(self, shapes: Array) -> Array:
+        """Return shapes (n,) of the map likewise."""
+        if not self.is_placed:
+            return shapes
+        placed = shapely.transform(shapes, lambda xy_m: np.asarray(self.place(xy_m), np.float64))
+        return np.asarray(placed, object)
+
+
+NOWHERE = Site()
+"""Of a map of which nobody said where it lies."""
+
+
+def find_site(measured: GeoReference | None, stated: Settings) -> Site:
+    """Return where a map lies on earth: as reference points say, else as the settings do."""
+    site = Site(**stated)
+    if measured is None:
+        return site
+    return replace(
+        site,
+        crs=measured.crs,
+        east_m=measured.east_m,
+        north_m=measured.north_m,
+        turn_deg=math.degrees(measured.rotation_rad),
+    )
 
 
 @dataclass(frozen=True)

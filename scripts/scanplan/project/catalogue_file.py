@@ -24,6 +24,7 @@ _FACADE_M = (0.05, 3.0)
 _MOST = 200
 """Sizes of a list: more than any maker's."""
 _ENTRY = {"name", "size_m"}
+_SYSTEM = {"system", *_LIMITS_M}
 _REMEDY = "see config/catalogue.yaml"
 
 
@@ -33,7 +34,9 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     Returns
     -------
     dict
-        `walls`, `doors` and `windows`, each a dict of name to size in metres; `facade_m`.
+        `walls`, `doors` and `windows`, each a dict of name to size in metres; `facade_m`;
+        `classification`, the name of a `system` and the code of each list, empty of none; `codes`,
+        by the names of entries that have their own.
 
     Raises
     ------
@@ -42,29 +45,45 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     """
     file = _OURS if path is None else path
     values = read_yaml(file)
+    classification = values.pop("classification", None)
     wanted = {*_LIMITS_M, "facade_m"}
     if set(values) != wanted:
         wrong = ", ".join(sorted(map(str, wanted ^ set(values))))
         raise StageError(f"{file}: has too much or too little: {wrong}; {_REMEDY}")
+    codes: dict[str, str] = {}
     return {
-        **{kind: _check_sizes(f"{file}: {kind}", kind, values[kind]) for kind in _LIMITS_M},
+        "classification": _check_classification(f"{file}: classification", classification),
+        "codes": codes,
+        **{k: _check_sizes(f"{file}: {k}", k, values[k], codes) for k in _LIMITS_M},
         "facade_m": _check_size(f"{file}: facade_m", values["facade_m"], _FACADE_M),
     }
 
 
-def _check_sizes(place: str, kind: str, entries: object) -> dict[str, float]:
+def _check_classification(place: str, given: object) -> dict[str, str]:
+    if given is None:
+        return {}
+    if not isinstance(given, dict) or set(given) != _SYSTEM:
+        raise StageError(f"{place} has not the keys {', '.join(sorted(_SYSTEM))}; {_REMEDY}")
+    return {key: texts.check_text(f"{place}: {key}", given[key]) for key in sorted(_SYSTEM)}
+
+
+def _check_sizes(place: str, kind: str, entries: object, codes: dict[str, str]) -> dict[str, float]:
+    """Return the sizes of a list by their names, and enter the codes that entries have."""
     if not isinstance(entries, list) or len(entries) > _MOST:
         raise StageError(f"{place} is no list of at most {_MOST} sizes; {_REMEDY}")
     sizes: dict[str, float] = {}
     for number, entry in enumerate(entries, 1):
         at = f"{place}, entry {number}"
-        if not isinstance(entry, dict) or set(entry) != _ENTRY:
-            raise StageError(f"{at}: expected {{name: ..., size_m: ...}} and no other; {_REMEDY}")
+        if not isinstance(entry, dict) or set(entry) - {"code"} != _ENTRY:
+            asked = "{name: ..., size_m: ...}, with a `code` or without"
+            raise StageError(f"{at}: expected {asked}, and no other; {_REMEDY}")
         name = texts.check_text(f"{at}: name", entry["name"])
         size_m = _check_size(f"{at}: size_m", entry["size_m"], _LIMITS_M[kind])
         if name in sizes or size_m in sizes.values():
             raise StageError(f"{at}: its name or size is there already; leave one out")
         sizes[name] = size_m
+        if "code" in entry:
+            codes[name] = texts.check_text(f"{at}: code", entry["code"])
     return sizes
 
 

@@ -25,6 +25,7 @@ from scanplan.project import (
     texts,
     tolerance_file,
     user_file,
+    words_file,
 )
 from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
 from scanplan.project.settings_schema import Schema
@@ -199,6 +200,8 @@ def describe_dataset(
     export = settings["plan"]["export"]
     if export["catalogue"] is not None:
         catalogue_file.read_catalogue(export["catalogue"])
+    words_file.read_words(export["language"])
+    words_file.read_layers(export["layers"])
     if path is None or dataset_files.is_survey_file(path):
         _check_survey(path, own)
         found = describe_simulated(name, settings, drawings)

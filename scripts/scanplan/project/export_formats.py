@@ -17,6 +17,13 @@ FILES = {
     "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
     "json": {"json": "plan/rooms.json"},
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
+    "masks": {
+        f"{mask}_{suffix}": f"plan/{mask}.{suffix}"
+        for mask in ("keepout", "speed")
+        for suffix in ("pgm", "yaml")
+    },
+    "editable": {"editable": "plan/presentation.ifc"},
+    "bcf": {"bcf": "plan/doubts.bcf"},
 }
 """What the stage `export_files` writes of each format, by what it is."""
 PRESENTATION = {
@@ -30,7 +37,7 @@ CLOUD = ("laz", "cloud.laz")
 """The format and the file of the stage `export_cloud`."""
 
 
-LIBRARIES = {"ifc": "ifcopenshell"}
+LIBRARIES = {"ifc": "ifcopenshell", "editable": "ifcopenshell", "bcf": "bcf"}
 """What some formats are written by that not every installation has."""
 
 

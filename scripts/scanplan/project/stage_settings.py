@@ -38,7 +38,7 @@ _THESIS = {
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew", "max_damaged_share")
 _ASSUMED = ("assumed_thickness_m", "assumed_height_m")
 _OF_PRESENTATION = ("catalogue", "max_change_m")
-_OF_FILES = ("formats", "author", "organisation", "site", "cloud", *_OF_PRESENTATION)
+_OF_FILES = ("formats", "author", "organisation", "cloud", *_OF_PRESENTATION)
 """What the drawings do not depend on."""
 _MOST_CHUNKS = 1000
 """Jobs of one stage: a recording of 4,000 GB has as many by default, and no cluster more nodes."""
@@ -166,10 +166,7 @@ def select_drawing(settings: Settings) -> Keywords:
 def select_presentation(settings: Settings) -> Keywords:
     """Return the settings of `export_presentation`, with the name of its catalogue."""
     export = select_section(settings, "plan", "export")
-    own = {
-        "north_deg": export["site"]["north_deg"],
-        **{key: export[key] for key in _OF_PRESENTATION},
-    }
+    own = {key: export[key] for key in _OF_PRESENTATION}
     return _without(select_drawing(settings), ("map_cell_m",)) | own
 
 
@@ -179,9 +176,16 @@ def select_design(settings: Settings) -> Keywords:
 
 
 def select_files(settings: Settings) -> Keywords:
-    """Return the settings of `export_files`."""
+    """Return the settings of `export_files`, with the name of the catalogue of sizes."""
     export = select_section(settings, "plan", "export")
-    return {key: export[key] for key in (*_ASSUMED, "author", "organisation", "site")}
+    own = ("author", "organisation", "site", "map_cell_m", *_OF_PRESENTATION)
+    return {key: export[key] for key in (*_ASSUMED, *own)}
+
+
+def select_cloud(settings: Settings) -> Keywords:
+    """Return the settings of `export_cloud`."""
+    export = select_section(settings, "plan", "export")
+    return {**export["cloud"], "site": export["site"]}
 
 
 def select_merging(settings: Settings) -> Keywords:

@@ -86,7 +86,7 @@ def compose_compared_sheet(
         *title.draw_frame(page),
         *title.draw_block(page, list_values(page)),
         *title.draw_scale_bar(page, bar[0]),
-        *title.draw_legend(legend, legend_slots),
+        *title.draw_legend(legend, legend_slots, page.locale),
         *_draw_table([of.words for of in listed], table_slots),
     ]
     return Sheet(

@@ -118,6 +118,15 @@ def ids_of_table(columns: Columns) -> ElementIds:
     return {kind: columns["global_id"][columns["kind"] == kind].tolist() for kind in KINDS}
 
 
+def take_ids(ids: ElementIds, plan: FloorPlan, part: FloorPlan) -> ElementIds:
+    """Return the ids of those elements of a plan that a part of it has, by their numbers."""
+    taken: dict[str, list[str]] = {}
+    for kind in KINDS:
+        of_number = dict(zip(_table(plan, kind)[kind].tolist(), ids[kind], strict=True))
+        taken[kind] = [of_number[number] for number in _table(part, kind)[kind].tolist()]
+    return taken
+
+
 def ids_from_places(plan: FloorPlan) -> ElementIds:
     """Return the ids that a plan's elements have where none was known before."""
     elements = list_elements(plan)

@@ -6,11 +6,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 
 from scanplan.exports import envelope
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import Array, Columns
+from scanplan.geometry import overlays
+from scanplan.plan.floorplan import WAYS, FloorPlan
+from scanplan.store import schemas
+from scanplan.types import Array, Columns, FloatArray
 
 _NOT_SHOWN = ("geometry",)
 _REFERENCES = ("wall", "face_left", "face_right", "room_a", "room_b")
@@ -33,9 +36,10 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     dict of str to dict of str to list
         By `walls`, `openings` and `rooms`: the columns of the plan's tables but for geometry, with
         `global_id` as in the building model; walls also `height_m` and `external`, openings and
-        rooms the names of rooms; rooms `height_m`, where the ceiling was seen, and
-        `least_height_m`, as high as anything was. Numbers are Python's; None where not known, or
-        for no wall or room.
+        rooms the names of rooms; rooms `height_m`, where the ceiling was seen,
+        `least_height_m`, as high as anything was, `net_area_m2`, less what columns stand on, and
+        how many doors and passages they have, and how wide the widest is. Numbers are Python's;
+        None where not known, or for no wall or room.
     """
     names = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
     walls = _plain(plan.walls, ids["wall"])
@@ -51,7 +55,29 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     is_ceiling = plan.height_from == "ceiling"
     rooms["height_m"] = [height_m if is_ceiling else None] * len(plan.room_names)
     rooms["least_height_m"] = [height_m] * len(plan.room_names)
+    rooms["net_area_m2"] = np.round(_measure_net_m2(plan), 4).tolist()
+    ways_m = [_list_ways_m(plan, room) for room in plan.rooms["room"].tolist()]
+    rooms["n_ways"] = [len(widths_m) for widths_m in ways_m]
+    rooms["widest_way_m"] = [_known("width_m", max(w, default=np.nan)) for w in ways_m]
     return {"walls": walls, "openings": openings, "rooms": rooms}
+
+
+def _measure_net_m2(plan: FloorPlan) -> FloatArray:
+    """Return the areas (n,) of rooms less what columns stand on."""
+    pieces = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
+    columns = overlays.unite_areas(pieces[np.asarray(plan.furniture["kind"]) == schemas.COLUMN])
+    if columns.is_empty or not len(plan.areas):
+        return np.asarray(plan.rooms["area_m2"], float)
+    taken_m2 = shapely.area(overlays.intersect_areas(plan.areas, columns))
+    return np.asarray(plan.rooms["area_m2"], float) - taken_m2
+
+
+def _list_ways_m(plan: FloorPlan, room: int) -> list[float]:
+    """Return how wide the doors and passages of a room are."""
+    openings = plan.openings
+    is_of = np.isin(openings["type"], WAYS)
+    is_of &= (openings["room_a"] == room) | (openings["room_b"] == room)
+    return np.asarray(openings["width_m"], float)[is_of].tolist()
 
 
 def format_csv(rows: Rows) -> str:

@@ -1,10 +1,10 @@
-"""The plan as a GeoPackage (OGC 12-128r18): layers of a SQLite file, in the survey's metres."""
+"""The plan as a GeoPackage (OGC 12-128r18): layers of a SQLite file, where the survey lies."""
 
 import sqlite3
 import struct
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -13,6 +13,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data.element_tables import Rows
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Array, FilePath
 
@@ -50,6 +51,7 @@ _SYSTEMS = (
 )
 """What the standard demands that every file knows, first what is not placed on earth."""
 _, _LOCAL, *_ = _SYSTEMS[0]
+_OWN = 100_000  # of a system that is none of the EPSG's: above all that it gives out
 
 
 @dataclass(frozen=True)
@@ -87,7 +89,9 @@ def plan_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
     }
 
 
-def write_geopackage(path: FilePath, layers: Mapping[str, Layer], t_ns: int) -> None:
+def write_geopackage(
+    path: FilePath, layers: Mapping[str, Layer], t_ns: int, site: Site = NOWHERE
+) -> None:
     """Write layers as a GeoPackage.
 
     Parameters
@@ -99,32 +103,47 @@ def write_geopackage(path: FilePath, layers: Mapping[str, Layer], t_ns: int) -> 
     t_ns : int
         When the survey was made, Unix time: the file says that it changed then, so that it is the
         same for the same layers.
+    site : Site
+        Where the map lies: features are in its system, metres of the map where it is in none.
     """
+    system = _LOCAL if not site.is_placed else site.epsg or _OWN
     changed = datetime.fromtimestamp(t_ns // 10**9, UTC).strftime("%Y-%m-%dT%H:%M:%S.000Z")
     with closing(sqlite3.connect(path)) as file, file:
         file.executescript(_TABLES)
         file.executemany("INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, ?)", _SYSTEMS)
+        if site.is_placed:
+            organisation, definition = "EPSG", "undefined"
+            if site.epsg is None:
+                name = str(site.crs).replace('"', "'")
+                organisation, definition = "NONE", f'LOCAL_CS["{name}",UNIT["metre",1]]'
+            own = (site.crs, system, organisation, system, definition, None)
+            file.execute("INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, ?)", own)
         for name, layer in layers.items():
-            _add_layer(file, name, layer, changed)
+            placed = replace(layer, shapes=site.place_shapes(layer.shapes))
+            _add_layer(file, name, placed, changed, system)
 
 
-def _add_layer(file: sqlite3.Connection, name: str, layer: Layer, changed: str) -> None:
+def _add_layer(
+    file: sqlite3.Connection, name: str, layer: Layer, changed: str, system: int
+) -> None:
     bounds = [None] * 4
     if len(layer.shapes):
         bounds = shapely.total_bounds(layer.shapes).tolist()
     file.execute(
         "INSERT INTO gpkg_contents VALUES (?, 'features', ?, '', ?, ?, ?, ?, ?, ?)",
-        (name, name, changed, *bounds, _LOCAL),
+        (name, name, changed, *bounds, system),
     )
     file.execute(
         "INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, ?, 0, 0)",
-        (name, layer.geometry, _LOCAL),
+        (name, layer.geometry, system),
     )
     columns = [f'"{column}" {_column_type(values)}' for column, values in layer.rows.items()]
     fields = ", ".join(["fid INTEGER PRIMARY KEY", f"geom {layer.geometry}", *columns])
     file.execute(f'CREATE TABLE "{name}" ({fields})')
     places = ", ".join("?" * (len(columns) + 2))
-    values = zip(map(_encode, layer.shapes), *layer.rows.values(), strict=True)
+    values = zip(
+        (_encode(shape, system) for shape in layer.shapes), *layer.rows.values(), strict=True
+    )
     rows = ((fid, *row) for fid, row in enumerate(values, 1))
     file.executemany(f'INSERT INTO "{name}" VALUES ({places})', rows)
 
@@ -134,11 +153,11 @@ def _column_type(values: list[Any]) -> str:
     return _TYPES[type(known[0])] if known else "DOUBLE"
 
 
-def _encode(shape: BaseGeometry) -> bytes:
+def _encode(shape: BaseGeometry, system: int) -> bytes:
     """Return a geometry as GeoPackage's binary: a header with its bounds, then WKB."""
     has_bounds = not shape.is_empty
     flags = 0b1 | has_bounds << 1 | shape.is_empty << 4
-    header = struct.pack("<2sBBi", b"GP", 0, flags, _LOCAL)
+    header = struct.pack("<2sBBi", b"GP", 0, flags, system)
     x0_m, y0_m, x1_m, y1_m = shape.bounds if has_bounds else (0.0,) * 4
     envelope = struct.pack("<4d", x0_m, x1_m, y0_m, y1_m) if has_bounds else b""
     return header + envelope + shapely.to_wkb(shape, byte_order=1)

@@ -1,6 +1,7 @@
 """The plan as a model to look at: binary glTF 2.0, an object for each element."""
 
 import json
+import math
 import struct
 from collections.abc import Iterator, Mapping
 from enum import IntEnum
@@ -12,6 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.model_colours import COLOURS, colour_of, read_colour
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
@@ -60,6 +62,24 @@ class _Model:
         self.content["scenes"][0]["nodes"].append(number)
         self.content["nodes"].append({"name": name, "mesh": number, "extras": {**about}})
 
+    def place(self, site: Site, floor_m: float) -> None:
+        """Put all nodes below one that is turned to the grid, and states where it lies."""
+        half_rad = math.radians(site.turn_deg) / 2
+        nodes = self.content["scenes"][0]["nodes"]
+        node = {
+            "name": "Grid",
+            "rotation": [0.0, math.sin(half_rad), 0.0, math.cos(half_rad)],
+            "children": nodes,
+            "extras": {
+                "crs": site.crs,
+                "east_m": site.east_m,
+                "north_m": site.north_m,
+                "height_m": site.height_m + floor_m,
+            },
+        }
+        self.content["scenes"][0]["nodes"] = [len(self.content["nodes"])]
+        self.content["nodes"].append(node)
+
     def pack(self) -> bytes:
         """Return the file."""
         self.content["buffers"] = [{"byteLength": len(self._data)}]
@@ -101,12 +121,13 @@ class _Model:
         return self._materials[colour]
 
 
-def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
+def format_glb(plan: FloorPlan, ids: ElementIds, site: Site = NOWHERE) -> bytes:
     """Return a plan as a binary glTF file: walls with openings, doors, windows, rooms' floors.
 
     Metres, y up; x is the map frame's, its y is -z here, 0 the floor. There is no ceiling, so that
     one sees in. Objects are named by kind and number, and have the building model's
-    GlobalIds.
+    GlobalIds. Where the map lies on earth a node above all turns x to east and -z to north, and
+    states its system and where its origin is in it: coordinates have single precision.
     """
     model = _Model(plan.name)
     for row, body in enumerate(plan.bodies):
@@ -127,6 +148,9 @@ def format_glb(plan: FloorPlan, ids: ElementIds) -> bytes:
     for row, area in enumerate(plan.areas):
         about = _about(ids["room"][row], plan.rooms, row)
         model.add(plan.room_names[row], about, "slab", _flat(area, 0.0))
+    if site.is_placed:
+        floor_m, _ = plan.storey_m
+        model.place(site, floor_m)
     return model.pack()
 
 

@@ -1,17 +1,24 @@
 """Registered points as a LAZ file."""
 
+import struct
 from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
 
 import laspy
 import numpy as np
+from laspy.vlrs.known import GeoKeyDirectoryVlr
 
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
 
 def write_laz(
-    path: FilePath, scans: Iterable[tuple[int, FloatArray]], cell_m: float, t_ns: int
+    path: FilePath,
+    scans: Iterable[tuple[int, FloatArray]],
+    cell_m: float,
+    t_ns: int,
+    site: Site = NOWHERE,
 ) -> tuple[int, int]:
     """Write the points of scans, thinned.
 
@@ -25,6 +32,8 @@ def write_laz(
         Of all points in a cube of this edge the first is kept; all are at 0.
     t_ns : int
         When the survey was made, Unix time: the day that the file says it was made.
+    site : Site
+        Where the map lies.
 
     Returns
     -------
@@ -33,20 +42,22 @@ def write_laz(
     Notes
     -----
     LAS 1.4, point format 6, with the extra dimension `scan_id`. Coordinates are rounded to a
-    millimetre; they are the map frame's, no system on earth is stated.
+    millimetre; they are the map frame's, no system on earth is stated, but where the map lies in
+    one: then they are its, of point format 1, which states it by its number.
     """
     cells = _SeenCells(cell_m)
     n_points = n_kept = 0
     with (
         Path(path).open("w+b") as stream,
         laspy.LasWriter(
-            stream, _header(t_ns), do_compress=True, laz_backend=laspy.LazBackend.Lazrs
+            stream, _header(t_ns, site), do_compress=True, laz_backend=laspy.LazBackend.Lazrs
         ) as file,
     ):
         for scan_id, xyz_m in scans:
             kept_m = xyz_m[cells.add(xyz_m)]
             record = laspy.ScaleAwarePointRecord.zeros(len(kept_m), header=file.header)
-            record.x, record.y, record.z = kept_m.astype(float).T
+            record.x, record.y = site.place(kept_m[:, :2].astype(float)).T
+            record.z = kept_m[:, 2].astype(float) + (site.height_m if site.is_placed else 0.0)
             record["scan_id"] = np.full(len(kept_m), scan_id, np.uint32)
             record["return_number"] = record["number_of_returns"] = np.ones(len(kept_m), np.uint8)
             file.write_points(record)
@@ -55,15 +66,30 @@ def write_laz(
     return n_points, n_kept
 
 
-def _header(t_ns: int) -> laspy.LasHeader:
-    header = laspy.LasHeader(point_format=6, version="1.4")
+def _header(t_ns: int, site: Site) -> laspy.LasHeader:
+    # from format 6 on a system is stated as text, which only its registry has
+    header = laspy.LasHeader(point_format=1 if site.is_placed else 6, version="1.4")
+    if site.epsg is not None:
+        header.vlrs.append(_state_system(site.epsg))
     header.add_extra_dim(laspy.ExtraBytesParams("scan_id", "u4", "scan of the recording"))
     # metres that coordinates are rounded to: less than any scanner's noise
     header.scales = np.full(3, 0.001)
-    header.offsets = np.zeros(3)
+    # numbers of 32 bits do not reach from the Equator
+    header.offsets = np.array([round(site.east_m), round(site.north_m), 0.0])
     header.generating_software = "scanplan"
     header.creation_date = datetime.fromtimestamp(t_ns // 10**9, UTC).date()
     return header
+
+
+def _state_system(epsg: int) -> GeoKeyDirectoryVlr:
+    """Return the number of a projected system of metres as keys of GeoTIFF."""
+    keys = {1024: 1, 3072: epsg, 3076: 9001}
+    directory = [1, 1, 0, len(keys)]
+    for key, value in keys.items():
+        directory += [key, 0, 1, value]
+    stated = GeoKeyDirectoryVlr()
+    stated.parse_record_data(struct.pack(f"<{len(directory)}H", *directory))
+    return stated
 
 
 class _SeenCells:

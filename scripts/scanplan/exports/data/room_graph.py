@@ -13,6 +13,8 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
 
 _PLACE = {"frame": "map", "unit": "m"}
+WHEELCHAIR_M = 0.9
+"""Clear width of doors for wheelchairs (DIN 18040)."""
 
 
 def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
@@ -28,13 +30,15 @@ def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
     str
         `rooms` with outline and a place inside; `ways`, each with its ends, its width and a place
         to go through in either room; `graph`, of each room by its number the ways and the rooms
-        that they lead to, null for one that no scan shows. Metres in the map frame, as in
-        `map.yaml`.
+        that they lead to, null for one that no scan shows; `wheelchair`, which rooms are joined by
+        ways at least 0.9 m wide, the group with most floor first, and which of them such a way
+        leads to from where no scan shows a room. Metres in the map frame, as in `map.yaml`.
     """
     ways = [_describe_way(plan, rows["openings"], row) for row in _list_ways(plan)]
     rooms = [_describe_room(plan, rows["rooms"], row) for row in range(len(plan.areas))]
     graph = {str(room["room"]): _list_exits(ways, room["room"]) for room in rooms}
     content = {"name": plan.name, **_PLACE, "rooms": rooms, "ways": ways, "graph": graph}
+    content["wheelchair"] = _find_accessible(rooms, ways)
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -114,6 +118,27 @@ def _list_exits(ways: list[dict[str, Any]], room: int) -> list[dict[str, Any]]:
         if room in (one, other):
             exits.append({"opening": way["opening"], "to": other if room == one else one})
     return exits
+
+
+def _find_accessible(rooms: list[dict[str, Any]], ways: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return which rooms ways that are wide enough join, and lead to from outside."""
+    areas_m2 = {room["room"]: room["area_m2"] for room in rooms}
+    wide = [way["rooms"] for way in ways if way["width_m"] >= WHEELCHAIR_M]
+    group_of = {room: {room} for room in areas_m2}
+    for one, other in wide:
+        if one in group_of and other in group_of and group_of[one] is not group_of[other]:
+            joined = group_of[one] | group_of[other]
+            group_of |= dict.fromkeys(joined, joined)
+    groups = {min(group): sorted(group) for group in group_of.values()}
+    ordered = sorted(
+        groups.values(), key=lambda group: (-sum(areas_m2[room] for room in group), group)
+    )
+    entered = {room for ends in wide if None in ends for room in ends} & set(areas_m2)
+    return {
+        "least_width_m": WHEELCHAIR_M,
+        "groups": ordered,
+        "from_outside": sorted({room for way in entered for room in group_of[way]}),
+    }
 
 
 def _round(values: Any) -> Any:

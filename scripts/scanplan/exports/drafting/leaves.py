@@ -1,19 +1,49 @@
 """How doors open, where their leaves were seen standing open."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 
+from scanplan.exports.sheet import content
 from scanplan.exports.sheet.marks import Symbol
 from scanplan.exports.sheet.symbols import WIDEST_LEAF_M
 from scanplan.geometry.polygons import long_axis_m
+from scanplan.plan.floorplan import FloorPlan
 from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray
 
 _HINGE_M = 0.2  # from a jamb to the end of its leaf: what a leaf is thick, and its end is off by
 _LEAST_SHARE = 0.5  # of a leaf's length that is seen beside a door: less is something else
 _LEAST_SINE = 0.25  # a leaf turned less than 15 degrees is shut, and does not say to which side
+
+
+@dataclass(frozen=True, eq=False)
+class Swing:
+    """How a door opens.
+
+    Attributes
+    ----------
+    block : str
+        Of `symbols.BLOCKS`: hinged at the start or the end of its line, or with two leaves.
+    is_reversed : bool
+        Whether its line is to run the other way, so that it opens to the left of it.
+    """
+
+    block: str
+    is_reversed: bool
+
+
+def find_swings(plan: FloorPlan) -> dict[int, Swing]:
+    """Return how doors open, by their rows, where a leaf was seen standing open."""
+    leaves_m = find_leaves(plan.furniture)
+    found: dict[int, Swing] = {}
+    for row, symbol in enumerate(content.list_symbols(plan)):
+        drawn = draw_swing(symbol, leaves_m) if symbol.kind == "door" else symbol
+        if drawn.kind == "swing":
+            before_m, after_m = (ends[1] - ends[0] for ends in (symbol.ends_m, drawn.ends_m))
+            found[row] = Swing(drawn.block, bool(before_m @ after_m < 0))
+    return found
 
 
 def find_leaves(furniture: Columns) -> FloatArray:

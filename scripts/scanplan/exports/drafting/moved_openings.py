@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.exports.drafting.nominal_sizes import choose_sizes
+from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.types import Columns, FloatArray, IntArray
 
@@ -22,7 +22,8 @@ def move_openings(
 ) -> Columns:
     """Return openings in the lines of their walls, with a column `width_changed_m`.
 
-    One of nearly a size of the catalogue is as wide, about its middle, where it has room for it.
+    One of nearly a size of the catalogue, or of a size that several others have, is as wide, about
+    its middle, where it has room for it; an empty list changes nothing.
 
     Parameters
     ----------
@@ -42,11 +43,12 @@ def move_openings(
     wanted_m = widths_m.copy()
     for kind, sizes in sizes_m.items():
         rows = np.flatnonzero((openings["type"] == kind) & (hosts >= 0))
+        allowed_m = min(tolerance_m, _CHANGED_M)
         nominal_m = choose_sizes(
             widths_m[rows],
             np.full(len(rows), _SIGMA_M),
-            np.full(len(rows), min(tolerance_m, _CHANGED_M)),
-            sizes,
+            np.full(len(rows), allowed_m),
+            find_own_sizes(widths_m[rows], sizes, allowed_m) if sizes else sizes,
             np.ones(len(rows)),
         )
         wanted_m[rows] = np.where(np.isnan(nominal_m), widths_m[rows], nominal_m)

@@ -9,7 +9,7 @@ from scanplan.exports.drafting.adjustment import Adjusted
 from scanplan.exports.drafting.priors import Wanted
 from scanplan.exports.drafting.wall_lines import WallLines
 from scanplan.plan.floorplan import line_shapes
-from scanplan.plan.tolerances import END_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.types import BoolArray, FloatArray
 
 _LEAST_SINE = 0.17  # walls that turn by less than 10 degrees run on, and have no crossing
@@ -72,7 +72,7 @@ def join_ends(walls: WallLines, lines_m: FloatArray, thickness_m: FloatArray) ->
         As drawn.
     """
     joined_m = np.array(lines_m, float)
-    apart_m, reach_m = _measure_gaps(walls)
+    apart_m, reach_m = _measure_gaps(walls, CORNER_M)
     own = np.arange(len(apart_m)) // 2
     is_met = (apart_m <= reach_m) & _is_turned(walls.ways)[own]
     is_met &= ~walls.is_bent & ~walls.is_bent[own][:, None]
@@ -97,21 +97,21 @@ def join_ends(walls: WallLines, lines_m: FloatArray, thickness_m: FloatArray) ->
 
 def find_met(walls: WallLines) -> BoolArray:
     """Return which ends (n, 2) of walls are at another wall."""
-    apart_m, reach_m = _measure_gaps(walls)
+    apart_m, reach_m = _measure_gaps(walls, END_M)
     return (apart_m <= reach_m).any(axis=1).reshape(-1, 2)
 
 
-def _measure_gaps(walls: WallLines) -> tuple[FloatArray, FloatArray]:
+def _measure_gaps(walls: WallLines, near_m: float) -> tuple[FloatArray, FloatArray]:
     """Return how far ends are from other walls' lines, and may be to meet these, both (2n, n).
 
-    Infinity from their own.
+    Infinity from their own; `near_m` may lie between the sides of two that meet.
     """
     ends_m = walls.lines_m.reshape(-1, 2)
     points = np.asarray(shapely.points(ends_m), object)[:, None]
     apart_m = shapely.distance(points, line_shapes(walls.lines_m))
     own = np.arange(len(ends_m)) // 2
     apart_m[np.arange(len(ends_m)), own] = np.inf
-    return apart_m, walls.half_m[own][:, None] + walls.half_m + END_M
+    return apart_m, walls.half_m[own][:, None] + walls.half_m + near_m
 
 
 def _is_turned(ways: FloatArray) -> BoolArray:

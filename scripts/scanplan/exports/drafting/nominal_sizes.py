@@ -7,6 +7,8 @@ import numpy as np
 from scanplan.types import FloatArray
 
 _ROUNDS = 20  # shares settle in fewer
+_FEWEST_ALIKE = 3  # as many of one size that no catalogue has are a type: two may be so by chance
+_STEP_M = 0.01  # of such a size: as fine as openings are measured
 _BUILT_SIGMA_M = 0.005  # plaster and boards make walls of one type differ by as much
 
 
@@ -59,3 +61,31 @@ def choose_sizes(
         shares = np.maximum(shares / shares.sum(), 1e-3)
     chosen_m[rows] = sizes[np.argmax(np.round(likely * shares, 12), axis=1)]
     return chosen_m
+
+
+def find_own_sizes(
+    measured_m: FloatArray, sizes_m: Sequence[float], allowed_m: float
+) -> list[float]:
+    """Return sizes of a catalogue, and those that several measured ones share and it has not.
+
+    Their median, to a centimetre, of those within `allowed_m` of it, the most frequent first;
+    none is nearer to another than what of either might be taken for both.
+
+    Examples
+    --------
+    >>> find_own_sizes(np.array([0.9, 0.741, 0.75, 0.752, 1.3]), (0.9,), 0.03)
+    [0.9, 0.75]
+    """
+    sizes = [float(size) for size in sizes_m]
+    left_m = np.asarray(measured_m, float)
+    left_m = np.sort(left_m[np.isfinite(left_m)])
+    while True:
+        off_m = np.abs(left_m[:, None] - np.array(sizes))
+        left_m = left_m[(off_m > allowed_m).all(axis=1)]
+        n_alike = (np.abs(left_m[:, None] - left_m) <= allowed_m).sum(axis=1)
+        if len(left_m) == 0 or n_alike.max() < _FEWEST_ALIKE:
+            return sizes
+        alike_m = left_m[np.abs(left_m - left_m[np.argmax(n_alike)]) <= allowed_m]
+        size_m = _STEP_M * round(float(np.median(alike_m)) / _STEP_M)
+        left_m = left_m[np.abs(left_m - size_m) > allowed_m]
+        sizes.append(round(size_m, 2))

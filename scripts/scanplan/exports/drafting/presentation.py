@@ -9,9 +9,11 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.leaves import draw_swing, find_leaves
 from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
+from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Symbol, straight
 from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
@@ -24,7 +26,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, say_count
 from scanplan.plan.tolerances import CORNER_M
 from scanplan.store import schemas
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import Array, BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
 _BESIDE_M = 0.05  # from a room's outline to a pane that bounds it: which has no thickness
@@ -53,8 +55,8 @@ def compose_presentation(
     facts, turn_deg
         See `composition.lay_out`.
     """
-    shown = _show_regular(measured, regular, _list_notes(drafted))
     stated = replace(facts or SheetFacts(), drawing="Floor plan, made regular")
+    shown = _show_regular(measured, regular, _list_notes(drafted, stated.locale))
     return lay_out(shown, stated, turn_deg=turn_deg)
 
 
@@ -69,8 +71,8 @@ def compose_overview(
 
     None where it has more rooms than a page. The parameters are those of `compose_presentation`.
     """
-    shown = _show_regular(measured, regular, _list_totals(regular))
     stated = replace(facts or SheetFacts(), drawing="Overview, without dimensions", number=2, of=2)
+    shown = _show_regular(measured, regular, _list_totals(regular, stated.locale))
     try:
         return lay_out(
             replace(shown, is_dimensioned=False), stated, turn_deg=turn_deg, names=("A4",)
@@ -108,7 +110,9 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")
     yield from content.draw_axes(plan)
     yield from content.draw_surfaces(plan)
-    cut_out = overlays.unite_areas([*plan.gaps, *plan.areas])
+    cut_out = overlays.unite_areas(
+        [*overlays.subtract_areas(plan.gaps, _find_backs(plan)), *plan.areas]
+    )
     above: BaseGeometry = shapely.Polygon()
     for kind, is_wanted in (("poche", ~plan.low), ("low", plan.low)):
         bodies = overlays.unite_areas(plan.bodies[is_wanted])
@@ -124,8 +128,25 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         yield content.draw_area("poche", outline, f"column-{number}", "column")
 
 
+def _find_backs(plan: FloorPlan) -> Array:
+    """Return the ground of walls that close openings without leaf or pane behind, (m,)."""
+    lines = floorplan.line_shapes(floorplan.centrelines_m(plan.walls))
+    bodies = plan.bodies
+    is_single = np.asarray(plan.walls["thickness_from"] != MEASURED, bool)
+    backs = np.full(len(plan.gaps), shapely.Polygon(), object)
+    for row in np.flatnonzero(np.isin(plan.openings["type"], BARE)).tolist():
+        within_m = shapely.length(overlays.intersect_lines(lines, plan.gaps[row]))
+        is_back = is_single & (within_m > plan.openings["width_m"][row] / 2)
+        is_back &= np.arange(len(lines)) != plan.hosts[row]
+        backs[row] = overlays.unite_areas(bodies[is_back])
+    return backs
+
+
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings of walls and between rooms; a pane in no wall that bounds no room is none."""
+    """Yield openings of walls and between rooms.
+
+    None is a pane in no wall that bounds no room, nor what has no leaf or pane and leads nowhere.
+    """
     leaves_m = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
     near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, _BESIDE_M)
@@ -136,9 +157,10 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
         floorplan.line_shapes(lines_m), overlays.unite_areas(plan.bodies)
     )
     is_double = shapely.length(behind) > plan.openings["width_m"] / 2
-    is_free = (plan.hosts < 0) & (bounds_none | is_double)
-    for symbol, is_loose in zip(content.list_symbols(plan), is_free.tolist(), strict=True):
-        if is_loose:
+    is_none = (plan.hosts < 0) & (bounds_none | is_double)
+    is_none |= find_nowhere(plan) | ~shapely.is_empty(_find_backs(plan))
+    for symbol, is_left_out in zip(content.list_symbols(plan), is_none.tolist(), strict=True):
+        if is_left_out:
             continue
         if symbol.kind == "door":
             yield draw_swing(symbol, leaves_m)
@@ -176,7 +198,7 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     return overlays.intersect_areas(built, near)
 
 
-def _list_notes(drafted: Drafted) -> list[str]:
+def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
     """Return what has been changed of the plan, and by what rule areas are, in lines."""
     walls = say_count(drafted.n_walls, "wall")
     assumed = say_count(drafted.n_assumed, "wall")
@@ -184,17 +206,18 @@ def _list_notes(drafted: Drafted) -> list[str]:
     sentences = [
         f"Of {walls} {drafted.n_square} are square to the building, {drafted.n_through} in line"
         f" with others, {drafted.n_nominal} of nominal thickness.",
-        f"No side of a wall moved by more than {_in_mm(drafted.moved_m)}, no wall turned by more"
-        f" than {drafted.turned_deg:.1f}° or thickened by more than {_in_mm(drafted.thickness_m)}.",
-        f"Openings widened by at most {_in_mm(drafted.width_m)}.",
+        f"No side of a wall moved by more than {locale.deviation(drafted.moved_m)}, no wall turned"
+        f" by more than {drafted.turned_deg:.1f}° or thickened by more than"
+        f" {locale.deviation(drafted.thickness_m)}.",
+        f"Openings widened by at most {locale.deviation(drafted.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (drafted.n_assumed > 0),
         f"{left_out} left out: short walls at no room, slits." * (drafted.n_left_out > 0),
         _AREA_RULE,
     ]
-    return _wrap(sentences)
+    return _wrap(sentences, locale)
 
 
-def _list_totals(plan: FloorPlan) -> list[str]:
+def _list_totals(plan: FloorPlan, locale: Locale) -> list[str]:
     """Return how much floor there is and how many doors and windows, in lines."""
     is_closed = np.asarray(plan.rooms["closed"], bool)
     areas_m2 = np.asarray(plan.rooms["area_m2"], float)
@@ -202,20 +225,20 @@ def _list_totals(plan: FloorPlan) -> list[str]:
     sentences: list[str] = []
     for is_of, noun, about in ((is_closed, "closed room", ""), (~is_closed, "open room", "about ")):
         if is_of.any():
-            total = f"{about}{areas_m2[is_of].sum():.1f} m² net"
+            total = f"{about}{locale.area(float(areas_m2[is_of].sum()))} net"
             sentences.append(f"{say_count(int(is_of.sum()), noun)}, {total}.")
     for kind in ("door", "window"):
         sizes, counts = np.unique(np.round(widths_m[kinds == kind], 1), return_counts=True)
-        listed = ", ".join(f"{n} of {size:.1f} m" for size, n in zip(sizes, counts, strict=True))
+        listed = ", ".join(
+            f"{n} of {locale.measure(float(size), 1)}"
+            for size, n in zip(sizes, counts, strict=True)
+        )
         if listed:
             sentences.append(f"{say_count(int(counts.sum()), kind)}: {listed}.")
-    return _wrap([*sentences, _AREA_RULE])
+    return _wrap([*sentences, _AREA_RULE], locale)
 
 
-def _wrap(sentences: Sequence[str]) -> list[str]:
+def _wrap(sentences: Sequence[str], locale: Locale) -> list[str]:
     width_mm = Paper.COLUMN - 6 * Paper.GAP
-    return [line for said in sentences for line in wrap_lines(said, Letters.SMALL, width_mm)]
-
-
-def _in_mm(length_m: float) -> str:
-    return f"{1000 * length_m:.0f} mm"
+    said = [locale.say(sentence) for sentence in sentences if sentence]
+    return [line for words in said for line in wrap_lines(words, Letters.SMALL, width_mm)]

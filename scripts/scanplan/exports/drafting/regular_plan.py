@@ -9,21 +9,19 @@ import shapely
 
 from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
 from scanplan.exports.drafting.adjustment import adjust_walls
-from scanplan.exports.drafting.facades import find_facades
+from scanplan.exports.drafting.facades import find_facades, limit_backs
 from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
+from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
-from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
-from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray
 
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
-_PIECE_M = 2 * CORNER_M  # as far as a wall of the greatest usual thickness is deep
 MEASURED, ASSUMED = "measured", "assumed"
 """Where a wall's thickness is from."""
 
@@ -95,7 +93,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     thickness, and their line is their face. Doubts are left out: they stand on the sheet of what
     was measured.
     """
-    plan = _leave_scraps(surveyed)
+    plan = leave_scraps(surveyed)
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     adjusted = adjust_walls(walls, wanted)
@@ -106,6 +104,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         max(settings.facade_m, plan.assumed_thickness_m),
         plan.assumed_thickness_m,
     )
+    behind_m = limit_backs(walls, behind_m)
     # of curved walls what is behind the face is drawn as on the measured sheet
     behind_m = np.where(walls.is_bent, np.nan, behind_m)
     thickness_m = np.where(walls.is_thick, walls.thickness_m + grown_m, behind_m)
@@ -157,34 +156,6 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
 
 def _count_elements(plan: FloorPlan) -> int:
     return len(plan.walls["wall"]) + len(plan.openings["opening"])
-
-
-def _leave_scraps(plan: FloorPlan) -> FloorPlan:
-    """Return a plan without slits, and short pieces of wall that end loose and bound no room.
-
-    Of those that were seen from one side only: they are reveals of outer walls, leaves and sides of
-    furniture. A slit is narrower than its ends err by.
-    """
-    lines_m = centrelines_m(plan.walls)
-    lengths_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
-    is_piece = (lengths_m < _PIECE_M) & ~plan.thick
-    is_piece &= np.asarray(plan.walls["corrected"], str) == ""
-    is_piece[plan.hosts[plan.hosts >= 0]] = False
-    outlines = overlays.unite_areas(plan.areas).boundary
-    near = overlays.buffer_shapes(outlines, 2 * moved_rooms.ON_M)
-    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
-    is_piece &= shapely.length(along) < lengths_m / 2
-    is_piece &= ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
-    is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
-    is_wide |= np.asarray(plan.openings["corrected"], str) != ""
-    kept = plan.walls["wall"][~is_piece]
-    is_shown = (plan.faces["wall"] < 0) | np.isin(plan.faces["wall"], kept)
-    return replace(
-        plan,
-        walls={name: values[~is_piece] for name, values in plan.walls.items()},
-        faces={name: values[is_shown] for name, values in plan.faces.items()},
-        openings={name: values[is_wide] for name, values in plan.openings.items()},
-    )
 
 
 def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:

@@ -32,7 +32,8 @@ def _add_column(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instanc
     )
     body = model.prism(frame.move_here(outline), 0.0, height_m)
     model.colour([body], "column")
-    column.Representation = model.shape([body])
+    around = model.outline(frame.move_here(outline))
+    column.Representation = model.shape([body], symbol=around)
     model.describe(
         column, "Pset_ColumnCommon", {"IsExternal": ("IfcBoolean", False)}, unknown=["LoadBearing"]
     )

@@ -1,7 +1,8 @@
 """Openings of a building model, and the doors and windows in them."""
 
 from collections import defaultdict
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,20 +10,31 @@ import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
 
+from scanplan.exports.drafting.leaves import Swing
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
+    NOMINAL,
     StoreyPlan,
     describe_doubt,
 )
-from scanplan.exports.ifc_elements.walls import nominal_m
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.exports.sheet.marks import Symbol
+from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import WAYS
 
 _FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow", "glass": "IfcWindow"}
+_LISTED_AS = {"door": "doors", "window": "windows"}  # lists of the catalogue
+_DRAWN_AS = {"door": "doorway"}
+_OPERATIONS = {
+    "SWING-LEFT": "SINGLE_SWING_LEFT",
+    "SWING-RIGHT": "SINGLE_SWING_RIGHT",
+    "SWING-2": "DOUBLE_DOOR_SINGLE_SWING",
+}
+"""IFC's words for how doors open, by the block that they are drawn with."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +72,10 @@ def _add_opening(
     model: IfcModel, storey: StoreyPlan, row: int, walls: list[entity_instance]
 ) -> Opening:
     plan = storey.plan
-    frame = Frame(floorplan.centrelines_m(plan.openings)[row])
+    line_m = floorplan.centrelines_m(plan.openings)[row]
+    swing = storey.swings.get(row)
+    # a door opens to the left of its own line
+    frame = Frame(line_m[::-1] if swing is not None and swing.is_reversed else line_m)
     kind = plan.openings["type"][row]
     extent_m = vertical_extent_m(plan, row)
     attributes = {
@@ -86,7 +101,18 @@ def _add_opening(
     if kind not in _FILLED_BY:
         return Opening(void, None)
     colour = colour_of(plan.openings, row, kind)
-    filling = _add_filling(model, global_id, kind, frame.length_m, extent_m, attributes, colour)
+    if model.is_editable:
+        attributes["PredefinedType"] = "DOOR" if kind == "door" else "WINDOW"
+    if swing is not None:
+        attributes["OperationType"] = _OPERATIONS[swing.block]
+    thickness_m = float(plan.openings["thickness_m"][row])
+    if np.isnan(thickness_m):
+        thickness_m = plan.assumed_thickness_m
+    symbol = _list_curves(model, kind, frame.length_m, thickness_m, swing)
+    filling = _add_filling(
+        *(model, global_id, kind, frame.length_m, extent_m),
+        *(attributes, colour, symbol if model.is_editable else ()),
+    )
     if void is not None:
         model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
     _describe_filling(model, storey, row, filling)
@@ -125,6 +151,7 @@ def _add_filling(
     extent_m: tuple[float, float],
     attributes: dict[str, Any],
     colour: str,
+    symbol: Sequence[entity_instance],
 ) -> entity_instance:
     """Add a door or window."""
     low_m, high_m = extent_m
@@ -137,8 +164,21 @@ def _add_filling(
     )
     leaf = model.prism(shapely.box(0, -LEAF_M / 2, width_m, LEAF_M / 2), low_m, high_m)
     model.colour([leaf], colour)
-    filling.Representation = model.shape([leaf])
+    filling.Representation = model.shape([leaf], symbol=symbol)
     return filling
+
+
+def _list_curves(
+    model: IfcModel, kind: str, width_m: float, thickness_m: float, swing: Swing | None
+) -> list[entity_instance]:
+    """Return what a door or window is drawn with in plan, in its own frame."""
+    # hinged in the side of the wall that it opens to
+    y_m = 0.0 if swing is None else thickness_m / 2
+    ends_m = np.array([[0.0, y_m], [width_m, y_m]])
+    symbol = Symbol(_DRAWN_AS.get(kind, kind), ends_m, thickness_m, "", "")
+    if swing is not None:
+        symbol = replace(symbol, kind="swing", block=swing.block)
+    return [model.path(path) for path in symbol_paths(symbol)]
 
 
 def _measure_void(
@@ -189,23 +229,36 @@ def _describe_opening(
         "JoinsRooms": ("IfcLabel", " and ".join(storey.name_joined_rooms(row)) or None),
     }
     model.describe(product, EVIDENCE, properties)
+    if storey.catalogue is not None:
+        changed_m = float(columns["width_changed_m"][row])
+        changes = {
+            "MeasuredWidth": ("IfcLengthMeasure", float(columns["width_m"][row]) - changed_m),
+            "WidthDeviation": ("IfcLengthMeasure", changed_m),
+        }
+        model.describe(product, NOMINAL, changes)
 
 
 def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) -> None:
-    """Give doors, and windows, of one nominal width a type."""
+    """Give doors that open alike, and windows, of one nominal width a type."""
     kinds = storey.plan.openings["type"]
     fillings_of = defaultdict(list)
     for kind, opening in zip(kinds, openings, strict=True):
-        if opening.filling is not None:
-            width_m = nominal_m(opening.filling.OverallWidth)
-            fillings_of[kind, width_m].append(opening.filling)
-    for (kind, width_m), fillings in sorted(fillings_of.items()):
+        filling = opening.filling
+        if filling is not None:
+            name, width_m = storey.name_type(_LISTED_AS.get(kind, ""), filling.OverallWidth)
+            operation = (filling.OperationType if kind == "door" else None) or "NOTDEFINED"
+            fillings_of[kind, width_m, operation, name].append(filling)
+    for (kind, width_m, operation, listed), fillings in sorted(fillings_of.items()):
         of_doors = kind == "door"
-        name = f"{kind.capitalize()} {100 * width_m:.0f} cm"
-        operation = "OperationType" if of_doors else "PartitioningType"
+        name = listed or f"{kind.capitalize()} {100 * width_m:.0f} cm"
+        if operation != "NOTDEFINED":
+            name += ", " + operation.lower().replace("_", " ")
         attributes = {
             "PredefinedType": "DOOR" if of_doors else "WINDOW",
-            operation: "NOTDEFINED",
+            "OperationType" if of_doors else "PartitioningType": operation,
         }
         product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)
+        system, code = storey.find_code(_LISTED_AS.get(kind, "windows"), listed)
+        if code:
+            model.classify([product_type, *fillings], system, code)
         model.join("IfcRelDefinesByType", fillings, RelatingType=product_type)

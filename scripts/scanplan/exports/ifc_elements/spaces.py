@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 from ifcopenshell import entity_instance
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
@@ -135,14 +136,14 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
 def _build_layer(
     model: IfcModel,
     product: entity_instance,
-    area: shapely.Geometry,
+    area: BaseGeometry,
     extent_m: tuple[float, float],
     colour: str,
 ) -> None:
     """Give a product the shape of an area (map frame) between two heights above the floor."""
     solids = [model.prism(part, *extent_m) for part in shapely.get_parts(area)]
     model.colour(solids, colour)
-    product.Representation = model.shape(solids)
+    product.Representation = model.shape(solids, symbol=model.outline(area))
 
 
 def _describe_level(model: IfcModel, product: entity_instance, level: str) -> None:

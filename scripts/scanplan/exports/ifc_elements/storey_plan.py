@@ -1,16 +1,23 @@
 """What the elements of a building model share: the plan, its ids, and what they are to be told."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.drafting.leaves import Swing, find_swings
+from scanplan.exports.drafting.regular_plan import MEASURED
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns
 
 EVIDENCE = "Scanplan_Evidence"
 """Name of the property set: IFC keeps the prefix Pset_ for its own."""
+NOMINAL = "Scanplan_Nominal"
+"""Name of the set that says by how much an element of a regular plan differs from what it was."""
+_ALIKE_M = 0.001  # of a size of the catalogue: what a wall is wide that is drawn as wide
 
 
 @dataclass(frozen=True)
@@ -24,11 +31,45 @@ class StoreyPlan:
         See `element_ids.ElementIds`.
     external : (n,) bool
         Which walls are the building's outside, see `envelope.find_external_walls`.
+    catalogue : mapping, optional
+        Of a regular plan: its nominal sizes, see `catalogue_file.read_catalogue`.
     """
 
     plan: FloorPlan
     ids: ElementIds
     external: BoolArray
+    catalogue: Mapping[str, Any] | None = None
+
+    @cached_property
+    def is_thickness_measured(self) -> BoolArray:
+        """Of which walls (n,) both sides were seen."""
+        if "thickness_from" not in self.plan.walls:
+            return self.plan.thick
+        return self.plan.thick & np.asarray(self.plan.walls["thickness_from"] == MEASURED, bool)
+
+    @cached_property
+    def swings(self) -> Mapping[int, Swing]:
+        """How doors open, by row of openings, where leaves showed it; none of a measured plan."""
+        return {} if self.catalogue is None else find_swings(self.plan)
+
+    def name_type(self, kind: str, size_m: float) -> tuple[str, float]:
+        """Return the name of the type of a size, empty of none, and its size.
+
+        That is the catalogue's of a regular plan, or else to the centimetre, no less than one.
+        """
+        sizes: Mapping[str, float] = (self.catalogue or {}).get(kind, {})
+        for name, nominal_m in sizes.items():
+            if abs(nominal_m - size_m) <= _ALIKE_M:
+                return name, nominal_m
+        return "", max(round(100 * float(size_m)), 1) / 100
+
+    def find_code(self, kind: str, name: str) -> tuple[str, str]:
+        """Return the system and the code of a type of a list of the catalogue; empty of none."""
+        catalogue = self.catalogue or {}
+        system = catalogue.get("classification", {})
+        if not system:
+            return "", ""
+        return system["system"], catalogue["codes"].get(name, system[kind])
 
     def leads_outside(self, opening: int) -> bool:
         """Return whether the wall that an opening is in is external."""

@@ -7,6 +7,7 @@ from ifcopenshell import entity_instance
 
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
+    NOMINAL,
     StoreyPlan,
     describe_doubt,
     known,
@@ -18,17 +19,14 @@ from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 
+_STANDARD = "STANDARD"  # IFC's word for walls of one thickness along their path
+
 
 def add_walls(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
     """Add the walls of a plan, in the order of its table."""
     walls = [_add_wall(model, storey, row) for row in range(len(storey.plan.bodies))]
     _give_types(model, storey, walls)
     return walls
-
-
-def nominal_m(size_m: float) -> float:
-    """Return a size to the centimetre, no less than one."""
-    return max(round(100 * float(size_m)), 1) / 100
 
 
 def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
@@ -50,7 +48,10 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     axis = np.array([(0, 0), (frame.length_m, 0)])
     centre_m = frame.place_here(plan.wall_shapes.centres_m[row])
     curve = model.arc(axis, centre_m) if plan.wall_shapes.is_bent[row] else None
-    wall.Representation = model.shape([body], axis, curve)
+    around = model.outline(frame.move_here(plan.bodies[row]), circles_m)
+    wall.Representation = model.shape([body], axis, curve, around)
+    if model.is_editable:
+        wall.PredefinedType = _STANDARD
     common = {"IsExternal": ("IfcBoolean", bool(storey.external[row]))}
     model.describe(wall, "Pset_WallCommon", common, unknown=["LoadBearing"])
     _describe_wall(model, storey, row, wall)
@@ -65,7 +66,7 @@ def _name_wall(storey: StoreyPlan, row: int) -> str:
     words = [
         f"Wall {plan.walls['wall'][row]}",
         "exterior" if storey.external[row] else "interior",
-        f"{thickness_cm:.0f} cm" if plan.thick[row] else "thickness assumed",
+        f"{thickness_cm:.0f} cm" if storey.is_thickness_measured[row] else "thickness assumed",
         f"radius {plan.walls['arc_radius_m'][row]:.2f} m" if plan.wall_shapes.is_bent[row] else "",
         f"{plan.heights_m[row]:.2f} m high" if plan.low[row] else "",
         "inferred" if plan.walls["state"][row] == "inferred" else "",
@@ -116,6 +117,7 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
     floor_m, _ = plan.storey_m
     columns = plan.walls
     is_low = bool(plan.low[row])
+    is_thick = storey.is_thickness_measured[row]
     height_from = "top of the wall" if is_low else floorplan.HEIGHTS[plan.height_from]
 
     def known_m(name: str, above_m: float = 0.0) -> tuple[str, float | None]:
@@ -124,7 +126,7 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
     properties = {
         "State": ("IfcLabel", str(columns["state"][row])),
         **describe_doubt(columns, row),
-        "ThicknessMeasured": ("IfcBoolean", bool(plan.thick[row] and columns["n_points"][row])),
+        "ThicknessMeasured": ("IfcBoolean", bool(is_thick and columns["n_points"][row])),
         "OffsetStandardDeviation": known_m("sigma_offset_m"),
         "Radius": known_m("arc_radius_m"),
         "RadiusStandardDeviation": known_m("sigma_radius_m"),
@@ -139,22 +141,46 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
     }
     model.describe(wall, EVIDENCE, properties)
+    if storey.catalogue is not None:
+        model.describe(wall, NOMINAL, _list_changes(storey, row))
+
+
+def _list_changes(storey: StoreyPlan, row: int) -> dict[str, tuple[str, str | float | None]]:
+    """Return what a wall of a regular plan was, and what it has been changed by."""
+    columns = storey.plan.walls
+    changed_m = float(columns["thickness_changed_m"][row])
+    measured_m = known(columns["thickness_m"][row] - changed_m)
+    return {
+        "ThicknessFrom": ("IfcLabel", str(columns["thickness_from"][row])),
+        "MeasuredThickness": (
+            "IfcLengthMeasure",
+            measured_m if storey.is_thickness_measured[row] else None,
+        ),
+        "ThicknessDeviation": ("IfcLengthMeasure", changed_m),
+        "Displacement": ("IfcLengthMeasure", float(columns["moved_m"][row])),
+        "Rotation": ("IfcPlaneAngleMeasure", float(np.radians(columns["turned_deg"][row]))),
+    }
 
 
 def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance]) -> None:
     """Give walls of one nominal thickness, measured or assumed, a type with a layer of it."""
-    plan = storey.plan
-    left_m, right_m = plan.sides_m
+    left_m, right_m = storey.plan.sides_m
     rows_of = defaultdict(list)
-    for row, is_thick in enumerate(plan.thick.tolist()):
-        rows_of[is_thick, nominal_m(left_m[row] + right_m[row])].append(row)
-    for (is_thick, thickness_m), rows in sorted(rows_of.items()):
+    for row, is_thick in enumerate(storey.is_thickness_measured.tolist()):
+        name, thickness_m = storey.name_type("walls", left_m[row] + right_m[row])
+        # what is assumed is of no maker
+        rows_of[is_thick, thickness_m, name if is_thick else ""].append(row)
+    for (is_thick, thickness_m, listed), rows in sorted(rows_of.items()):
         assumed = "" if is_thick else ", thickness assumed"
-        name = f"Wall {100 * thickness_m:.0f} cm{assumed}"
+        name = (listed or f"Wall {100 * thickness_m:.0f} cm") + assumed
         material = model.new("IfcMaterial", "Not known" + assumed, None, "not known")
         layer = model.new("IfcMaterialLayer", material, thickness_m)
         layers = model.new("IfcMaterialLayerSet", [layer], name)
-        wall_type = model.root("IfcWallType", (name,), Name=name, PredefinedType="NOTDEFINED")
+        predefined = _STANDARD if model.is_editable else "NOTDEFINED"
+        wall_type = model.root("IfcWallType", (name,), Name=name, PredefinedType=predefined)
+        system, code = storey.find_code("walls", listed)
+        if code:
+            model.classify([wall_type, *(walls[row] for row in rows)], system, code)
         model.join("IfcRelAssociatesMaterial", [wall_type], RelatingMaterial=layers)
         model.join("IfcRelDefinesByType", [walls[row] for row in rows], RelatingType=wall_type)
         for row in rows:

@@ -96,35 +96,20 @@ def lay_out(
     facts = facts or SheetFacts()
     plan, marks, symbols = shown.plan, shown.marks, shown.symbols
     # the scale bar with the axes takes six rows
-    blocks = [6, len(_list_legend(shown, marks)), len(shown.notes), len(plan.areas)]
+    blocks = [6, len(_list_legend(shown, marks, is_about=True)), len(shown.notes), len(plan.areas)]
     turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
     extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
     around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
     page = choose_page(*extent, turn_deg, blocks, least_scale, names=names, around_mm=around_mm)
+    page = replace(page, locale=facts.locale)
     # doors that swing out put the chain before them farther off: room on the other side goes there
     swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
     page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
-    legend = _list_legend(shown, marks)
-    blocks[1] = len(legend)
-    bar, legend_slots, note_slots, table_slots = fill_slots(page.slots(), blocks) or (
-        [],
-        [],
-        [],
-        [],
-    )
-    beside: list[Mark | Word] = [
-        *title.draw_frame(page),
-        *title.draw_title_block(page, shown.titled, facts),
-        *title.draw_scale_bar(page, bar[0], facts.north_deg),
-        *title.draw_legend(legend, legend_slots),
-        *title.draw_notes(shown.notes, note_slots),
-    ]
     marks += content.draw_corrections(plan, _apart_m(page))
     space = _open_space(page, marks, symbols)
     stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
-    beside += title.draw_room_table(stamps, table_slots)
     on_paper = page.place_shape(shown.uncertain)
     drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
     is_stated = _find_stated(symbols, drawn)
@@ -136,7 +121,26 @@ def lay_out(
     labels: list[Word] = []
     if shown.is_labelled:
         labels += words.label_openings(page, symbols, is_stated, space)
+    if shown.is_dimensioned:
         labels += words.label_walls(page, plan, space)
+    is_about = any(dimension.word.text.startswith("~") for dimension in [*drawn, *rooms])
+    is_about |= not np.all(plan.rooms["closed"])
+    legend = _list_legend(shown, marks, is_about=is_about)
+    blocks[1] = len(legend)
+    bar, legend_slots, note_slots, table_slots = fill_slots(page.slots(), blocks) or (
+        [],
+        [],
+        [],
+        [],
+    )
+    beside: list[Mark | Word] = [
+        *title.draw_frame(page),
+        *title.draw_title_block(page, shown.titled, facts),
+        *title.draw_scale_bar(page, bar[0], facts.north_deg),
+        *title.draw_legend(legend, legend_slots, page.locale),
+        *title.draw_notes(shown.notes, note_slots, page.locale),
+        *title.draw_room_table(stamps, table_slots, page.locale),
+    ]
     return Sheet(
         clean_text(plan.name),
         page,
@@ -151,7 +155,8 @@ def lay_out(
     )
 
 
-def _list_legend(shown: Shown, marks: list[Mark]) -> list[str]:
+def _list_legend(shown: Shown, marks: list[Mark], *, is_about: bool) -> list[str]:
+    """Return the kinds that a legend explains, with the sign for about where it stands anywhere."""
     plan = shown.plan
     kinds = {symbol.kind for symbol in shown.symbols}
     if shown.is_labelled and list_doubts(plan):
@@ -159,7 +164,7 @@ def _list_legend(shown: Shown, marks: list[Mark]) -> list[str]:
     tables = (plan.walls, plan.openings, plan.rooms)
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
-    if not (plan.assumed.is_empty and shown.uncertain.is_empty):
+    if is_about:
         kinds.add("dimension")
     return title.list_legend(marks, kinds)
 

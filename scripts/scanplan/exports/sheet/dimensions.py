@@ -24,11 +24,22 @@ _SQUARE = 0.1  # of a facade's direction: by less it runs along the sheet's
 
 @dataclass(frozen=True)
 class _Facade:
-    """A stretch that is seen from below: from x to x, at y; millimetres on turned paper."""
+    """A stretch that is seen from below: from x, y to x, y; millimetres on turned paper."""
 
     x0: float
+    y0: float
     x1: float
-    y: float
+    y1: float
+
+    @property
+    def y(self) -> float:
+        """The height of its middle."""
+        return (self.y0 + self.y1) / 2
+
+    def cut(self, x0: float, x1: float) -> "_Facade":
+        """Return the stretch of it from x to x."""
+        at_y = np.interp([x0, x1], [self.x0, self.x1], [self.y0, self.y1])
+        return _Facade(x0, float(at_y[0]), x1, float(at_y[1]))
 
 
 def dimension_facades(
@@ -124,18 +135,19 @@ def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
         for (x0, y0), (x1, y1) in itertools.pairwise(ring):
             # counterclockwise, what runs to the right is below
             if x1 - x0 > 0 and abs(y1 - y0) <= _SQUARE * (x1 - x0):
-                edges.append(_Facade(x0, x1, (y0 + y1) / 2))
+                edges.append(_Facade(x0, y0, x1, y1))
     seen: list[_Facade] = []
     for edge in sorted(edges, key=lambda e: e.y):
         hidden = [(other.x0, other.x1) for other in seen]
         for x0, x1 in _cut_intervals((edge.x0, edge.x1), hidden):
             if x1 - x0 > 0:
-                seen.append(_Facade(x0, x1, edge.y))
+                seen.append(edge.cut(x0, x1))
     joined: list[_Facade] = []
     for facade in sorted(seen, key=lambda e: e.x0):
         last = joined[-1] if joined else None
-        if last and facade.x0 - last.x1 <= gap and abs(facade.y - last.y) <= gap:
-            joined[-1] = _Facade(last.x0, facade.x1, min(last.y, facade.y))
+        # an oblique one goes on where it ended, however far that is from its middle
+        if last and facade.x0 - last.x1 <= gap and abs(facade.y0 - last.y1) <= gap:
+            joined[-1] = _Facade(last.x0, last.y0, facade.x1, facade.y1)
         else:
             joined.append(facade)
     return [facade for facade in joined if facade.x1 - facade.x0 > 5 * gap]
@@ -163,7 +175,7 @@ def _chain_stops(
     """
     if not facades:
         return []
-    found = [(ends[0], facades[0].y), (ends[1], facades[-1].y)]
+    found = [(ends[0], facades[0].y0), (ends[1], facades[-1].y1)]
     for (x0, y0), (x1, y1) in openings:
         low, high = min(x0, x1), max(x0, x1)
         is_along = abs(y1 - y0) <= _SQUARE * (high - low)
@@ -171,9 +183,11 @@ def _chain_stops(
         for facade in facades if is_along else []:
             # an opening lies in the middle of its wall, whose face is before it
             is_in_it = facade.x0 - gap <= low and high <= facade.x1 + gap
-            if is_in_it and -gap <= y - facade.y <= 4 * gap:
-                found += [(low, facade.y), (high, facade.y)]
-    found += [(x, facade.y) for facade in facades for x in (facade.x0, facade.x1)]
+            before = facade.cut(low, high)
+            if is_in_it and -gap <= y - before.y <= 4 * gap:
+                found += [(low, before.y0), (high, before.y1)]
+    for facade in facades:
+        found += [(facade.x0, facade.y0), (facade.x1, facade.y1)]
     stops: list[tuple[float, float]] = []
     for x, y in found:
         if all(abs(x - other) >= Paper.LEAST for other, _ in stops):
@@ -209,7 +223,7 @@ def _draw_chain(
 
 
 def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:
-    return f"{'~' if is_about else ''}{length_mm / page.mm_per_m:.2f}"
+    return f"{'~' if is_about else ''}{page.locale.length(length_mm / page.mm_per_m)}"
 
 
 def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Candidate]:

@@ -10,6 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet.lettering import rotation
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.styles import Paper
 from scanplan.types import FloatArray
 
@@ -63,6 +64,8 @@ class Page:
         Of the plan, in its turned frame.
     around_mm : float
         Left free around the plan.
+    locale : Locale
+        How it is written.
     """
 
     name: str
@@ -72,6 +75,7 @@ class Page:
     turn_deg: float
     middle_m: FloatArray
     around_mm: float = Paper.AROUND
+    locale: Locale = ENGLISH
 
     @property
     def inner_mm(self) -> tuple[float, float, float, float]:

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
+from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet.accuracy import SensorErrors, state_accuracy
 from scanplan.exports.sheet.lettering import (
     clean_text,
@@ -12,12 +14,13 @@ from scanplan.exports.sheet.lettering import (
     shorten_text,
     wrap_text,
 )
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, straight
 from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
-from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
+from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_to_verify
@@ -28,6 +31,7 @@ TITLE_TAG = "title:"
 Value = tuple[str, str, int]
 """Of a title block: its head, what it says, and how many of three columns it is wide."""
 _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
+_NAMES = ("Project", "Survey")  # values that are names, in no language
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
 
@@ -52,6 +56,10 @@ class SheetFacts:
         What kind of drawing it is.
     north_deg : float or None
         From the map frame's x axis to true north, counter-clockwise; None where not known.
+    locale : Locale
+        How the sheet is written.
+    frame : str
+        Where the map lies on earth; empty where not known.
     """
 
     project: str = ""
@@ -64,9 +72,11 @@ class SheetFacts:
     sensor: SensorErrors = field(default_factory=SensorErrors)
     drawing: str = "Floor plan, as surveyed"
     north_deg: float | None = None
+    locale: Locale = ENGLISH
+    frame: str = ""
 
 
-def summarise_survey(evidence: Columns, **stated: str | int | SensorErrors) -> SheetFacts:
+def summarise_survey(evidence: Columns, **stated: Any) -> SheetFacts:
     """Return what a title block states of the scans that a plan is made of.
 
     Parameters
@@ -81,6 +91,16 @@ def summarise_survey(evidence: Columns, **stated: str | int | SensorErrors) -> S
     if len(t_ns) == 0:
         return replace(SheetFacts(n_scans=n_scans), **stated)
     return replace(SheetFacts("", "", state_date(int(t_ns.min())), n_scans), **stated)
+
+
+def state_frame(site: Site, measured: GeoReference | None) -> str:
+    """Return in words where a map lies on earth, and how well reference points agree with it."""
+    if not site.is_placed:
+        return ""
+    place = f"origin E {site.east_m:.3f} N {site.north_m:.3f}, x axis {site.turn_deg:.4f}° from E"
+    if measured is None:
+        return f"{site.crs}: {place}"
+    return f"{site.crs}: {place}; residual {1000 * measured.residual_m:.0f} mm"
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -117,10 +137,10 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
         ],
         [
-            ("Frame", f"map, {turn}; {north}", 2),
+            ("Frame", f"{facts.frame or 'map'}, {turn}; {north}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
-        [("Verdict", _state_verdict(plan), 3)],
+        [("Verdict", _state_verdict(plan, page.locale), 3)],
     ]
     yield from draw_block(page, rows)
 
@@ -141,13 +161,15 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
             width = columns * Paper.COLUMN
             if x > x0:
                 yield _rule(x, top, x, bottom)
-            yield _word("note", head, x + Paper.GAP, (top + bottom) / 2, Letters.SMALL)
+            said = page.locale.say(head)
+            yield _word("note", said, x + Paper.GAP, (top + bottom) / 2, Letters.SMALL)
             ends = (x + _HEAD_MM, x + width - Paper.GAP)
-            yield from _draw_value(head, clean_text(value), ends, (top + bottom) / 2)
+            text = clean_text(value if head in _NAMES else page.locale.say(value))
+            yield from _draw_value(head, text, ends, (top + bottom) / 2)
             x += width
 
 
-def _state_verdict(plan: FloorPlan) -> str:
+def _state_verdict(plan: FloorPlan, locale: Locale) -> str:
     """Return as much of a verdict as two lines of the title block hold, the remedy before why.
 
     What else was found is counted.
@@ -160,8 +182,12 @@ def _state_verdict(plan: FloorPlan) -> str:
         return f"{verdict.head}{more}"
     known = [f"{text}{more}" for text in (verdict.line, f"{verdict.head}; {verdict.remedy}")]
     # what is cut off ends in an ellipsis
-    fitting = (t for t in known if not wrap_text(t, Letters.SMALL, width_mm)[-1].endswith("…"))
+    fitting = (t for t in known if not _is_cut(locale.say(t), width_mm))
     return next(fitting, f"{verdict.head}; see summary.txt")
+
+
+def _is_cut(text: str, width_mm: float) -> bool:
+    return wrap_text(text, Letters.SMALL, width_mm)[-1].endswith("…")
 
 
 def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:
@@ -183,10 +209,12 @@ def list_legend(marks: Sequence[Mark], kinds: set[str]) -> list[str]:
     return [kind for kind, style in STYLES.items() if kind in drawn and style.meaning]
 
 
-def draw_legend(kinds: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+def draw_legend(
+    kinds: Sequence[str], slots: Sequence[Slot], locale: Locale
+) -> Iterator[Mark | Word]:
     """Yield the legend: samples with their meanings."""
     rows = [(kind, *place) for kind, place in zip(kinds, _row_places(slots), strict=True)]
-    yield from _heads(slots, ["Legend"], [0.0])
+    yield from _heads(slots, [locale.say("Legend")], [0.0])
     for kind, x, y in rows:
         low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
         if kind in (*OPENINGS, "parting", "doorway"):
@@ -197,9 +225,8 @@ def draw_legend(kinds: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | 
             ends = np.array([[x + Paper.GAP, y], [x + Paper.SAMPLE, y]])
             paths, closed = [straight(ends)], False
         yield Mark(kind, paths, closed, f"legend-{kind}", STYLES[kind].meaning)
-        yield _word(
-            "title", STYLES[kind].meaning, x + Paper.SAMPLE + 2 * Paper.GAP, y, Letters.SMALL
-        )
+        meaning = locale.say(STYLES[kind].meaning)
+        yield _word("title", meaning, x + Paper.SAMPLE + 2 * Paper.GAP, y, Letters.SMALL)
 
 
 def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
@@ -211,16 +238,22 @@ def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
     return [straight(flatten(path)) for path in symbol_paths(sample, block)]
 
 
-def draw_notes(notes: Sequence[str], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+def draw_notes(
+    notes: Sequence[str], slots: Sequence[Slot], locale: Locale
+) -> Iterator[Mark | Word]:
     """Yield lines of words below a head."""
-    yield from _heads(slots, ["Notes"], [0.0])
+    yield from _heads(slots, [locale.say("Notes")], [0.0])
     for note, (x, y) in zip(notes, _row_places(slots), strict=True):
         yield _word("title", note, x + Paper.GAP, y, Letters.SMALL)
 
 
-def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[Mark | Word]:
+def draw_room_table(
+    stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale
+) -> Iterator[Mark | Word]:
     """Yield the table of rooms: number, name, area, perimeter, height."""
-    names = ["No.", "Room", "Area m²", "Perim. m", "Height m"]
+    of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
+    heads = ["No.", "Room", f"Area{of_area}", f"Perim.{of_length}", f"Height{of_length}"]
+    names = [locale.say(head) for head in heads]
     # where each begins, or ends from the third on, millimetres
     ends = [0.0, 6.0, 30.0, 42.5, 55.5]
     yield from _heads(slots, names, ends)
@@ -228,10 +261,10 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
         facts = stamp.facts
         sizes = [
             facts[tag].removesuffix(unit).replace("about ", "~")
-            for tag, unit in (("AREA", " m²"), ("PERIMETER", " m"))
+            for tag, unit in (("AREA", of_area), ("PERIMETER", of_length))
         ]
-        height = facts["HEIGHT"].removesuffix(" m").replace("at least", "min.")
-        height = height.replace("not seen", "-")
+        height = facts["HEIGHT"].removesuffix(of_length).replace("at least", "min.")
+        height = locale.say(height.replace("not seen", "-"))
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
         name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
         texts = [facts["NUMBER"], name, *sizes, height]
@@ -245,19 +278,21 @@ def draw_room_table(stamps: Sequence[Stamp], slots: Sequence[Slot]) -> Iterator[
 
 def draw_scale_bar(page: Page, slot: Slot, north_deg: float | None = None) -> Iterator[Mark | Word]:
     """Yield a scale bar, and the axes of the map frame as they lie on the sheet, or north."""
-    length_m = 10.0 ** np.floor(np.log10(0.75 * Paper.COLUMN / page.mm_per_m))
+    unit_m, unit = page.locale.bar
+    mm_per_unit = page.mm_per_m * unit_m
+    length = 10.0 ** np.floor(np.log10(0.75 * Paper.COLUMN / mm_per_unit))
     parts = 5
-    while length_m * 2 * page.mm_per_m <= 0.7 * Paper.COLUMN:
-        length_m *= 2
+    while length * 2 * mm_per_unit <= 0.7 * Paper.COLUMN:
+        length *= 2
         parts = 4
     x, y = slot.x_mm + 2 * Paper.GAP, slot.y_mm - 1.4 * Paper.ROW
-    width = length_m * page.mm_per_m / parts
+    width = length * mm_per_unit / parts
     for number in range(parts):
         kind = "title" if number % 2 else "scale-bar"
         left = x + number * width
         yield Mark(kind, [_box(left, y, left + width, y + 1.2)], True, f"scale-bar-{number}")
-    for share, unit in ((0, ""), (1, " m")):
-        text = f"{share * length_m:g}{unit}"
+    for share, said in ((0, ""), (1, f" {unit}")):
+        text = page.locale.say(f"{share * length:g}") + said
         yield _word("title", text, x + share * parts * width, y - 2.2, Letters.SMALL, 0.5)
     origin = np.array([slot.x_mm + 10.0, slot.y_mm - 4.4 * Paper.ROW])
     yield from _draw_axes(page, origin, north_deg)
@@ -284,7 +319,7 @@ def _draw_axes(page: Page, origin: FloatArray, north_deg: float | None) -> Itera
     notes = ["axes of the map frame", f"turned by {turned:+.1f}°", "north unknown"]
     x, y = origin + np.array([14.0, reach])
     for number, note in enumerate(notes if turned else ["axes of the map frame", "north unknown"]):
-        yield _word("note", note, x, y - number * 3.2, Letters.SMALL)
+        yield _word("note", page.locale.say(note), x, y - number * 3.2, Letters.SMALL)
 
 
 def _heads(slots: Sequence[Slot], names: list[str], ends: list[float]) -> Iterator[Mark | Word]:

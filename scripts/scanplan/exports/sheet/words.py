@@ -34,14 +34,14 @@ def stamp_rooms(
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
         number, closed = int(rooms["room"][row]), bool(rooms["closed"][row])
         about = "" if closed else "about "
-        area = f"{about}{rooms['area_m2'][row]:.1f} m²"
-        name = clean_text(plan.room_names[row])
+        area = f"{about}{page.locale.area(float(rooms['area_m2'][row]))}"
+        name = clean_text(_name_room(page, plan, row))
         facts = {
             "NUMBER": str(number),
             "NAME": name,
             "AREA": area,
-            "PERIMETER": f"{about}{rooms['perimeter_m'][row]:.2f} m",
-            "HEIGHT": plan.height_words,
+            "PERIMETER": f"{about}{page.locale.girth(float(rooms['perimeter_m'][row]))}",
+            "HEIGHT": _state_height(page, plan),
             "CLOSED": "yes" if closed else "no",
             "CORRECTED": str(rooms["corrected"][row]) if corrected[row] else "no",
         }
@@ -51,10 +51,25 @@ def stamp_rooms(
         marks = " *" * int(corrected[row]) + " ?" * int(doubtful[row])
         title += marks
         label = f"{number}{marks}"
-        chosen = space.place(_stamp_places(outline, middle, number, title, area, label))
+        said = page.locale.say(area)
+        chosen = space.place(_stamp_places(outline, middle, number, title, said, label))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
         stamps[row] = Stamp(words, facts, bool(doubtful[row]))
     return [stamps[row] for row in sorted(stamps)]
+
+
+def _name_room(page: Page, plan: FloorPlan, row: int) -> str:
+    """Return the name that a person gave a room, or its number in the sheet's language."""
+    given = plan.rooms.get("name", np.full(len(plan.areas), "", object))[row]
+    return str(given) or page.locale.say(plan.room_names[row])
+
+
+def _state_height(page: Page, plan: FloorPlan) -> str:
+    """Return how high the storey is, as `plan.height_words` in the sheet's unit."""
+    if not np.isfinite(plan.least_height_m):
+        return "not seen"
+    bound = "" if plan.height_from == "ceiling" else "at least "
+    return f"{bound}{page.locale.measure(plan.least_height_m)}"
 
 
 def _stamp_places(
@@ -75,7 +90,9 @@ def _stamp_places(
             Word("stamp", area, place - apart / 2, Letters.SMALL, element=element),
         ]
         yield Candidate(lines, off)
-        short = Word("stamp", lines[0].text.removeprefix("Room "), lines[0].place, Letters.MEDIUM)
+        # a number says that it is a room
+        bare = label if title.endswith(f" {label}") else title
+        short = Word("stamp", bare, lines[0].place, Letters.MEDIUM)
         yield Candidate([short, lines[1]], 3 + off)
         yield Candidate([Word("stamp", label, place, Letters.SMALL, element=element)], 5 + off)
     yield from lead_out(Word("stamp", label, middle, Letters.SMALL, element=element), 6)
@@ -99,8 +116,8 @@ def label_openings(
 ) -> Iterator[Word]:
     """Yield the widths of openings that no chain of dimensions states, and marks of doubt."""
     for symbol, is_stated in zip(symbols, is_in_chain, strict=True):
-        text = "" if is_stated else f"{symbol.width_m:.2f}"
-        mark = mark_doubt(str(symbol.facts.get("about", "")), verify=symbol.verify)
+        text = "" if is_stated else page.locale.length(symbol.width_m)
+        mark = _mark_doubt(page, str(symbol.facts.get("about", "")), verify=symbol.verify)
         text = _join_words(text, mark)
         if text:
             kind = "verify" if mark else "width"
@@ -115,16 +132,20 @@ def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word
     left_m, right_m = plan.sides_m
     radii_m = _find_radii_m(plan)
     for row, ends_m in enumerate(floorplan.centrelines_m(plan.walls)):
-        parts = [f"{plan.heights_m[row]:.2f} high" if plan.low[row] else ""]
+        height = page.locale.length(plan.heights_m[row])
+        parts = [page.locale.say(f"{height} high") if plan.low[row] else ""]
         if row in radii_m:
-            parts.append(f"R {radii_m[row]:.2f}")
+            parts.append(f"R {page.locale.length(radii_m[row])}")
             ends_m = _tangent_m(plan, row)
         text = ", ".join(filter(None, parts))
         about = str(plan.walls["about"][row]) if doubtful[row] and "about" in plan.walls else ""
-        words = [(_join_words(text, mark_doubt(about, verify=bool(doubtful[row]))), ends_m)]
+        mark = _mark_doubt(page, about, verify=bool(doubtful[row]))
+        words = [(_join_words(text, mark), ends_m)]
         if row in loose_m:
             # beside the end alone, not the middle of the wall
-            words.append((MARKS[END], np.stack([loose_m[row], ends_m.mean(axis=0)])))
+            words.append(
+                (page.locale.say(MARKS[END]), np.stack([loose_m[row], ends_m.mean(axis=0)]))
+            )
         thick_mm = float(left_m[row] + right_m[row]) * page.mm_per_m
         for said, along_m in words:
             if said:
@@ -154,6 +175,10 @@ def _tangent_m(plan: FloorPlan, row: int) -> FloatArray:
     corners_m = plan.wall_shapes.trace(row)
     middle = (len(corners_m) - 1) // 2
     return corners_m[middle : middle + 2]
+
+
+def _mark_doubt(page: Page, about: str, *, verify: bool) -> str:
+    return page.locale.say(mark_doubt(about, verify=verify))
 
 
 def _join_words(text: str, mark: str) -> str:

@@ -1,0 +1,119 @@
+"""What a draughtsman leaves out of a plan: scraps of walls, walls twice, what windows show."""
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scanplan.exports.drafting import moved_rooms, moved_walls
+from scanplan.exports.drafting.facades import find_facades
+from scanplan.exports.drafting.wall_lines import gather_lines
+from scanplan.geometry import overlays
+from scanplan.geometry.lines import left_normals
+from scanplan.plan import floorplan
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.tolerances import CORNER_M, END_M
+from scanplan.types import BoolArray, FloatArray
+
+BARE = ("passage", "gap")
+"""Types of openings without a leaf or a pane."""
+_PIECE_M = 2 * CORNER_M  # as far as a wall of the greatest usual thickness is deep
+_WITHIN = 0.9  # of a wall's ground that lies in a thicker one: its ends alone are outside
+_OUTSIDE_M = 2.0  # behind a facade: leaves of windows, reveals, what stands on a sill
+_OBLIQUE = 0.17  # sine of ten degrees: what is turned less goes on as the back of a recess
+
+
+def leave_scraps(plan: FloorPlan) -> FloorPlan:
+    """Return a plan without what no draughtsman draws, and the openings of what is left out.
+
+    Slits narrower than their ends err by, and of walls that no person drew and that were seen from
+    one side only:
+
+    - short pieces that end loose and bound no room, openings into nothing not counted: reveals,
+      leaves, sides of furniture; longer ones, too, that are more likely wrong than right;
+    - what crosses a facade or lies behind it, bounds no room and is turned away from it: what is
+      seen through windows;
+    - what lies in a thicker wall: its one side once more.
+    """
+    is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan)
+    is_left_out |= _find_within(plan)
+    is_left_out &= ~plan.thick & (np.asarray(plan.walls["corrected"], str) == "")
+    is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
+    is_wide |= np.asarray(plan.openings["corrected"], str) != ""
+    is_wide &= ~np.append(is_left_out, False)[plan.hosts]
+    kept = plan.walls["wall"][~is_left_out]
+    is_shown = (plan.faces["wall"] < 0) | np.isin(plan.faces["wall"], kept)
+    return replace(
+        plan,
+        walls={name: values[~is_left_out] for name, values in plan.walls.items()},
+        faces={name: values[is_shown] for name, values in plan.faces.items()},
+        openings={name: values[is_wide] for name, values in plan.openings.items()},
+    )
+
+
+def find_nowhere(plan: FloorPlan) -> BoolArray:
+    """Return which openings (m,) without a leaf or a pane lead from a room into itself.
+
+    Or from no room into none.
+    """
+    openings = plan.openings
+    is_bare = np.isin(openings["type"], BARE)
+    return is_bare & np.asarray(openings["room_a"] == openings["room_b"], bool)
+
+
+def _find_bounding(plan: FloorPlan) -> BoolArray:
+    """Return which walls (n,) bound rooms along half of their length or more."""
+    lines_m = centrelines_m(plan.walls)
+    outlines = overlays.unite_areas(plan.areas).boundary
+    near = overlays.buffer_shapes(outlines, 2 * moved_rooms.ON_M)
+    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
+    return shapely.length(along) >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2
+
+
+def _find_pieces(plan: FloorPlan) -> BoolArray:
+    """Return which walls (n,) end loose, and are short or more likely wrong than right."""
+    lines_m = centrelines_m(plan.walls)
+    solid_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
+    is_nowhere = find_nowhere(plan)
+    is_hosted = plan.hosts >= 0
+    np.subtract.at(
+        solid_m,
+        plan.hosts[is_hosted & is_nowhere],
+        plan.openings["width_m"][is_hosted & is_nowhere],
+    )
+    is_piece = solid_m < _PIECE_M
+    is_piece[plan.hosts[is_hosted & ~is_nowhere]] = False
+    unlikely = np.asarray(plan.walls.get("p_true", np.ones(len(lines_m))), float) < 1 / 2
+    return (is_piece | unlikely) & ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+
+
+def _find_outside(plan: FloorPlan) -> BoolArray:
+    """Return which walls (n,) lie for the most part behind facades, turned away from these."""
+    lines_m = centrelines_m(plan.walls)
+    ways_m = lines_m[:, 1] - lines_m[:, 0]
+    lengths_m = np.hypot(*ways_m.T)
+    ways = ways_m / lengths_m[:, None]
+    shapes = floorplan.line_shapes(lines_m)
+    outside = np.zeros(len(lines_m))
+    for facade in np.flatnonzero(find_facades(plan)).tolist():
+        is_oblique = np.abs(ways @ left_normals(lines_m)[facade]) >= _OBLIQUE
+        ground = shapely.Polygon([*lines_m[facade], *lines_m[facade][::-1] + _behind(plan, facade)])
+        share = shapely.length(overlays.intersect_lines(shapes, ground)) / lengths_m
+        outside = np.maximum(outside, np.where(is_oblique, share, 0.0))
+    return outside > 1 / 2
+
+
+def _behind(plan: FloorPlan, wall: int) -> FloatArray:
+    left_m, right_m = plan.sides_m
+    side = 1.0 if left_m[wall] > right_m[wall] else -1.0
+    return side * _OUTSIDE_M * left_normals(centrelines_m(plan.walls)[[wall]])[0]
+
+
+def _find_within(plan: FloorPlan) -> BoolArray:
+    """Return which walls (n,) lie with nearly all of their ground in one of known thickness."""
+    bodies = plan.bodies
+    thick = np.flatnonzero(plan.thick)
+    of, number = shapely.STRtree(bodies[thick]).query(bodies).reshape(2, -1)
+    common_m2 = shapely.area(overlays.intersect_areas(bodies[of], bodies[thick[number]]))
+    is_within = (common_m2 >= _WITHIN * shapely.area(bodies[of])) & (of != thick[number])
+    return np.isin(np.arange(len(bodies)), of[is_within])

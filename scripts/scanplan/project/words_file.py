@@ -1,0 +1,100 @@
+"""Words of sheets in another language, and names of layers in CAD: ours or a person's files.
+
+No heavy imports: this runs while the workflow is being parsed, so that a mistake ends the run
+before it has begun.
+"""
+
+from __future__ import annotations
+
+import re
+from datetime import date
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scanplan.errors import StageError
+from scanplan.project import texts
+from scanplan.project.yaml_file import read_yaml
+
+if TYPE_CHECKING:
+    from scanplan.types import FilePath
+
+_CONFIG = Path(__file__).resolve().parents[3] / "config"
+_PLACE = re.compile(r"\{n?\}")
+_FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`]')
+"""What names of layers must not have in DXF."""
+_LONGEST = 255
+"""Letters of such a name."""
+
+
+def read_words(language: str) -> dict[str, Any]:
+    """Read and check the words of a language: one of ours by its name, or a file.
+
+    Returns
+    -------
+    dict
+        `decimal`, `date` and `phrases`, see `locale.Locale`; nothing of English.
+
+    Raises
+    ------
+    StageError
+        If it is missing or damaged, or an entry is wrong.
+    """
+    if language == "en":
+        return {}
+    file = _find_file(language, "words")
+    values = read_yaml(file)
+    if set(values) != {"decimal", "date", "phrases"}:
+        raise StageError(
+            f"{file}: expected the keys decimal, date and phrases; see {_CONFIG.name}/words/de.yaml"
+        )
+    if values["decimal"] not in (".", ","):
+        raise StageError(f"{file}: decimal is {values['decimal']!r}, expected '.' or ','")
+    try:
+        date(2000, 12, 31).strftime(texts.check_text(f"{file}: date", values["date"]))
+    except ValueError:
+        raise StageError(f"{file}: date is no format of a day; write it like %d.%m.%Y") from None
+    if not isinstance(values["phrases"], dict):
+        raise StageError(f"{file}: phrases is no mapping of English phrases to others")
+    for phrase, words in values["phrases"].items():
+        place = f"{file}: phrase {phrase!r}"
+        if not isinstance(phrase, str) or not isinstance(words, str) or not words.strip():
+            raise StageError(f"{place} has no words; write both as text, in quotation marks")
+        asked, given = len(_PLACE.findall(phrase)), len(_PLACE.findall(words))
+        if asked != given or set(re.sub(_PLACE, "", words)) & set("{}"):
+            raise StageError(f"{place} has {asked} places, its words have {given}; keep each {{}}")
+    return values
+
+
+def read_layers(layers: FilePath | None) -> dict[str, str]:
+    """Read and check names of layers: one of our files by its name, or a person's.
+
+    Returns
+    -------
+    dict of str to str
+        Another name by ours; empty where ours are to be kept.
+
+    Raises
+    ------
+    StageError
+        If it is missing or damaged, or a name is wrong.
+    """
+    if layers is None:
+        return {}
+    file = _find_file(str(layers), "layers")
+    values = read_yaml(file)
+    for name, other in values.items():
+        place = f"{file}: layer {name!r}"
+        if not isinstance(other, str) or not other.strip() or len(other) > _LONGEST:
+            raise StageError(f"{place} has no name of 1 to {_LONGEST} letters; write one")
+        if _FORBIDDEN.search(other):
+            raise StageError(f"{place}: {other!r} has signs that DXF forbids; use letters, - and _")
+    names = [str(other).casefold() for other in values.values()]
+    if len(set(names)) < len(names):
+        raise StageError(f"{file}: two layers have one name; give each its own")
+    return {str(name): str(other) for name, other in values.items()}
+
+
+def _find_file(name: str, folder: str) -> Path:
+    """Return one of our files by its name, or else the file of that name."""
+    ours = _CONFIG / folder / f"{name}.yaml"
+    return ours if re.fullmatch(r"[a-z]+", name) and ours.is_file() else Path(name)

@@ -1,0 +1,76 @@
+"""Doubts as topics: who reads them finds the element, the place and the question."""
+
+import io
+from pathlib import Path
+
+import bcf.v2.bcfxml
+import numpy as np
+import pytest
+
+from helpers import floorplan_making
+from scanplan.exports.data import doubt_topics, element_ids
+from scanplan.exports.model_origin import ModelOrigin
+from scanplan.validation.doubts import list_doubts
+
+ORIGIN = ModelOrigin(author="A. Uthor", t_ns=1_700_000_000 * 10**9)
+
+
+@pytest.fixture
+def doubted():
+    """The plan with a wall and a face to be verified, and a room that is not closed."""
+    faces = floorplan_making.faces()
+    faces["verify"] = np.isin(faces["face"], [4])
+    rooms = floorplan_making.rooms()
+    rooms["closed"][1] = False
+    return floorplan_making.plan(faces=faces, rooms=rooms, floor_z_m=-0.3)
+
+
+def read(content, folder):
+    file = folder / "doubts.bcf"
+    file.write_bytes(content)
+    return bcf.v2.bcfxml.BcfXml.load(Path(file))
+
+
+def test_a_topic_for_each_doubt_selects_its_element_from_above(doubted, tmp_path):
+    ids = element_ids.ids_from_places(doubted)
+    found = read(doubt_topics.format_bcf(doubted, ids, ORIGIN), tmp_path)
+    assert found is not None and found.version.version_id == "2.1"
+    topics = sorted(found.topics.values(), key=lambda handler: handler.topic.index)
+    doubts = list_doubts(doubted)
+    assert {"wall", "face", "room"} <= {doubt.kind for doubt in doubts}
+    # the wall whose face is doubtful
+    expected = {
+        "wall": lambda number: ids["wall"][number],
+        "face": lambda number: ids["wall"][doubted.faces["wall"][number]],
+        "room": lambda number: ids["room"][number],
+    }
+    for doubt, handler in zip(doubts, topics, strict=True):
+        assert handler.topic.description == doubt.question
+        assert handler.topic.creation_author == "A. Uthor"
+        (view,) = handler.viewpoints.values()
+        shown = view.visualization_info
+        (component,) = shown.components.selection.component
+        assert component.ifc_guid == expected[doubt.kind](doubt.number)
+        camera = shown.orthogonal_camera
+        assert [camera.camera_view_point.x, camera.camera_view_point.y] == pytest.approx(
+            doubt.place_m
+        )
+        assert camera.camera_direction.z == -1
+        (plane,) = shown.clipping_planes.clipping_plane
+        # 1.2 m above a floor that lies at -0.3 m
+        assert plane.location.z == pytest.approx(0.9) and plane.direction.z == 1
+
+
+def test_the_same_plan_gives_the_same_bytes(doubted):
+    ids = element_ids.ids_from_places(doubted)
+    first = doubt_topics.format_bcf(doubted, ids, ORIGIN)
+    assert doubt_topics.format_bcf(doubted, ids, ORIGIN) == first
+    assert io.BytesIO(first).read(2) == b"PK"
+
+
+def test_a_plan_without_doubts_has_no_topics(tmp_path):
+    walls = floorplan_making.walls()
+    walls["verify"][:] = False
+    sure = floorplan_making.plan(walls=walls)
+    found = read(doubt_topics.format_bcf(sure, element_ids.ids_from_places(sure), ORIGIN), tmp_path)
+    assert found is not None and found.topics == {}

@@ -1,0 +1,178 @@
+"""Sheets in the receiver's units and language, and the files of words that say them."""
+
+import io
+
+import ezdxf
+import pytest
+
+from helpers import floorplan_making
+from scanplan.errors import StageError
+from scanplan.exports import dxf
+from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.sheet.composition import compose_sheet, paper_words
+from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
+from scanplan.exports.sheet.title import SheetFacts
+from scanplan.project.words_file import read_layers, read_words
+
+SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
+LANGUAGES = ("de", "fr", "es")
+# what is the same in every language: names, letters of axes, sizes of paper, words that are alike
+ALIKE = {"office", "scanplan", "A4", "A3", "x", "y", "passage", "Notes", "2 m"}
+
+
+def sheets(locale):
+    """The sheets of the toy plan: as measured, regular, and the overview."""
+    measured = floorplan_making.plan(floor_z_m=0.0, ceiling_z_m=2.5)
+    measured.rooms["closed"][1] = False
+    facts = SheetFacts(n_scans=5, surveyed="2026-02-17", locale=locale)
+    regular, changes = draft_plan(measured, SETTINGS)
+    found = [
+        compose_sheet(measured, facts),
+        compose_presentation(measured, regular, changes, facts),
+        compose_overview(measured, regular, facts),
+    ]
+    return [sheet for sheet in found if sheet is not None]
+
+
+def texts(sheet):
+    return [word.text for word in paper_words(sheet)]
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_nothing_on_a_sheet_stays_english(language):
+    locale = make_locale("m", read_words(language))
+    for english, other in zip(sheets(ENGLISH), sheets(locale), strict=True):
+        letters = {text for text in texts(english) if any(map(str.isalpha, text))}
+        left = (letters & set(texts(other))) - ALIKE
+        assert {text for text in left if not text.startswith("1:")} == set()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_numbers_and_dates_are_as_written_there(language):
+    said = texts(sheets(make_locale("m", read_words(language)))[1])
+    assert "7,30" in said and "7.30" not in said
+    assert {"17.02.2026", "17/02/2026"} & set(said) and "2026-02-17" not in said
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    # 7.3 m: 23 feet of 304.8 mm and 11.40 inches; 12 m2: 129.2 square feet
+    [
+        ("m", {"7.30", "12.0 m²", "2 m"}),
+        ("cm", {"730", "12.0 m²", "2 m"}),
+        ("mm", {"7300", "12.0 m²", "2 m"}),
+        ("ft", {"23'-11 1/2\"", "129 ft²", "4 ft"}),
+    ],
+)
+def test_lengths_and_areas_are_in_the_unit_that_is_asked_for(unit, expected):
+    assert expected <= set(texts(sheets(Locale(unit))[1]))
+
+
+@pytest.mark.parametrize(
+    ("length_m", "said"),
+    [
+        (0.0, "0'-0\""),
+        (0.3048, "1'-0\""),
+        (0.3047, "1'-0\""),
+        (1.0, "3'-3 1/4\""),
+        (2.4, "7'-10 1/2\""),
+    ],
+)
+def test_feet_and_inches_are_rounded_to_a_quarter_of_an_inch(length_m, said):
+    assert Locale("ft").length(length_m) == said
+
+
+def test_phrases_hold_numbers_and_other_phrases():
+    words = {"{n} doors": "{n} Türen", "about {}": "etwa {}", "a plan: {}": "ein Plan: {}"}
+    german = Locale(decimal=",", date="%d.%m.%Y", phrases=words)
+    assert german.say("a plan: about 3 doors") == "ein Plan: etwa 3 Türen"
+    assert german.say("3 doors; 1.5") == "3 Türen; 1,5"
+    assert german.say("no such words, of mine") == "no such words, of mine"
+    assert german.say("2026-02-17") == "17.02.2026"
+
+
+def read_dxf(sheet, **more):
+    return ezdxf.filemanagement.read(io.StringIO(dxf.format_dxf(sheet, **more)))
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("m", 1e-3), ("cm", 0.1), ("mm", 1.0)])
+def test_cad_measures_dimensions_in_the_unit_of_the_sheet(unit, factor):
+    sheet = sheets(Locale(unit))[0]
+    document = read_dxf(sheet)
+    assert document.dimstyles.get("SCANPLAN").dxf.dimlfac == pytest.approx(factor)
+    drawn = document.modelspace().query("DIMENSION")
+    stated = sorted(dimension.word.text for dimension in sheet.dimensions)
+    assert len(drawn) == len(stated) and any(text.startswith("~") for text in stated)
+    is_about = [dimension.dxf.text.startswith("~") for dimension in drawn]
+    assert sum(is_about) == sum(text.startswith("~") for text in stated)
+
+
+def test_feet_stand_in_cad_as_on_the_sheet():
+    sheet = sheets(Locale("ft"))[0]
+    drawn = read_dxf(sheet).modelspace().query("DIMENSION")
+    stated = sorted(dimension.word.text for dimension in sheet.dimensions)
+    assert sorted(dimension.dxf.text for dimension in drawn) == stated
+
+
+def test_layers_have_the_names_that_are_asked_for_and_nothing_is_lost():
+    sheet = sheets(ENGLISH)[0]
+    ours, others = read_dxf(sheet), read_dxf(sheet, layers=read_layers("din"))
+    names = read_layers("din")
+    assert not {layer.dxf.name for layer in others.layers} & set(names)
+
+    def count(document):
+        layers = [entity.dxf.layer for entity in document.modelspace()]
+        return sorted((names.get(layer, layer), layers.count(layer)) for layer in set(layers))
+
+    assert count(ours) == sorted(
+        (layer, [e.dxf.layer for e in others.modelspace()].count(layer))
+        for layer in {e.dxf.layer for e in others.modelspace()}
+    )
+    assert others.audit().errors == []
+
+
+def test_a_file_of_ones_own_is_read(tmp_path):
+    file = tmp_path / "it.yaml"
+    file.write_text('decimal: ","\ndate: "%d/%m/%Y"\nphrases: {"{n} doors": "{n} porte"}\n')
+    assert Locale("m", **read_words(str(file))).say("2 doors") == "2 porte"
+    assert read_words("en") == {} and read_layers(None) == {}
+    layers = tmp_path / "mine.yaml"
+    layers.write_text("A-WALL: Muri\n")
+    assert read_layers(layers) == {"A-WALL": "Muri"}
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ('decimal: ","\n', "phrases"),
+        ('decimal: ";"\ndate: "%d"\nphrases: {}', "decimal"),
+        ('decimal: ","\ndate: 3\nphrases: {}', "date"),
+        ('decimal: ","\ndate: "%d"\nphrases: []', "phrases"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors": "porte"}', "{n} doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"doors": "{porte"}', "doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"doors": ""}', "doors"),
+    ],
+)
+def test_a_mistake_in_words_is_named(tmp_path, text, named):
+    file = tmp_path / "words.yaml"
+    file.write_text(text)
+    with pytest.raises(StageError) as raised:
+        read_words(str(file))
+    assert str(file) in str(raised.value) and named in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "text", ["A-WALL: 'a/b'", "A-WALL: ''", "A-WALL: 3", "A-WALL: W\nA-DOOR: w", "A-WALL: [W]"]
+)
+def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):
+    file = tmp_path / "layers.yaml"
+    file.write_text(text)
+    with pytest.raises(StageError, match=str(file)):
+        read_layers(file)
+
+
+@pytest.mark.parametrize("read", [read_words, read_layers])
+def test_a_file_that_is_not_there_is_told(read):
+    with pytest.raises(StageError, match="does not exist"):
+        read("nowhere.yaml")

@@ -1,0 +1,90 @@
+"""What a draughtsman leaves out of a plan, and what he does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers import floorplan_making
+from scanplan.exports.drafting.presentation import compose_presentation
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.drafting.scraps import find_nowhere, leave_scraps
+
+SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
+NEW = 6  # the number of a wall that comes to those of the plan
+
+
+def with_wall(line, openings=(), **columns):
+    """Return the plan with one more wall, seen from its left alone, and openings of it."""
+    walls = floorplan_making.walls([*floorplan_making.WALLS, (line, np.nan, 0, -1, "observed")]) | {
+        name: np.append(np.ones(NEW), value) for name, value in columns.items()
+    }
+    rows = [*floorplan_making.OPENINGS]
+    made = floorplan_making.openings([*rows, *[(row[0], 0, *row[1:]) for row in openings]])
+    made["wall"][len(rows) :] = NEW
+    return floorplan_making.plan(walls=walls, openings=made)
+
+
+@pytest.mark.parametrize(
+    ("line", "is_left_out"),
+    [
+        # the east wall is a facade, its face at 7.1 m: a leaf of a window, open behind it
+        ((7.05, 1.0, 8.2, 1.3), True),
+        # the same in the room: for the most part before the face
+        ((6.3, 1.0, 7.2, 1.3), False),
+        # along the facade it is the back of a recess
+        ((7.3, 1.0, 7.3, 2.2), False),
+        # 3 m beyond it is another building
+        ((9.5, 1.0, 10.7, 1.3), False),
+        # the east side of the wall between the rooms once more, which is 0.1 m thick
+        ((4.1, 2.5, 4.1, 0.5), True),
+    ],
+)
+def test_walls_behind_facades_or_in_thicker_ones_are_left_out(line, is_left_out):
+    kept = leave_scraps(with_wall(line)).walls["wall"]
+    assert (NEW not in kept) == is_left_out
+    assert set(range(NEW)) <= set(kept.tolist())
+
+
+def test_what_is_more_likely_wrong_is_left_out_where_it_ends_loose_and_bounds_no_room():
+    loose = (8.0, 5.0, 10.0, 5.0)
+    assert NEW in leave_scraps(with_wall(loose, p_true=0.6)).walls["wall"]
+    assert NEW not in leave_scraps(with_wall(loose, p_true=0.4)).walls["wall"]
+    # along the north side of the first room
+    beside = (0.5, 2.98, 3.5, 2.98)
+    assert NEW in leave_scraps(with_wall(beside, p_true=0.4)).walls["wall"]
+
+
+def test_a_wall_that_is_mostly_a_way_from_a_room_into_itself_goes_with_it():
+    line, way = (1.0, 0.6, 3.0, 0.6), (1.3, 0.6, 2.9, 0.6)
+    into_itself = with_wall(line, [(way, "passage", 0.0, 2.5, 0, 0)])
+    assert find_nowhere(into_itself).tolist() == [False, False, False, True]
+    kept = leave_scraps(into_itself)
+    assert NEW not in kept.walls["wall"] and 3 not in kept.openings["opening"]
+    between = with_wall(line, [(way, "passage", 0.0, 2.5, 0, 1)])
+    assert NEW in leave_scraps(between).walls["wall"]
+
+
+def poche(plan):
+    regular, changes = draft_plan(plan, SETTINGS)
+    sheet = compose_presentation(plan, regular, changes)
+    parts = [shapely.Polygon(m.paths[0][:, :2], [p[:, :2] for p in m.paths[1:]])
+             for m in sheet.marks if m.kind == "poche"]  # fmt: skip
+    return shapely.union_all(parts), {symbol.element for symbol in sheet.symbols}
+
+
+def test_a_face_behind_a_gap_of_a_facade_closes_a_recess_flush_with_it():
+    # a gap of 1.2 m in the east wall, whose face is at 7.1 m, and a face 0.2 m behind it
+    gap = ((7.1, 1.0, 7.1, 2.2), 1, "gap", 0.0, 2.5, 1, -1)
+    rows = [*floorplan_making.OPENINGS, gap]
+    back = with_wall((7.3, 1.0, 7.3, 2.2))
+    plan = replace(back, openings=floorplan_making.openings(rows))
+    solid, drawn = poche(plan)
+    # the assumed 0.3 m end at 7.4 m, where the back of 0.1 m does
+    assert solid.bounds[2] == pytest.approx(7.4)
+    assert not solid.contains(shapely.Point(7.2, 1.6)) and solid.contains(shapely.Point(7.35, 1.6))
+    assert "gap-3" not in drawn
+    # without a back it is a way out
+    open_solid, open_drawn = poche(floorplan_making.plan(openings=floorplan_making.openings(rows)))
+    assert not open_solid.contains(shapely.Point(7.35, 1.6)) and "gap-3" in open_drawn
