@@ -31,7 +31,7 @@ class Cells:
         Row times `n_columns` plus column.
     far : (k,) float64
         How far each is from what is no ground, in cells.
-    near : (k, 9) int32
+    near : (9, k) int32
         Number of the cells around each and of itself, row by row; `k` is none.
     """
 
@@ -49,9 +49,9 @@ def list_cells(inside: BoolArray) -> Cells:
     """Return the cells of a grid (rows, columns) that are inside, none of them at its edge."""
     n_columns = inside.shape[1]
     flat = np.flatnonzero(inside)
-    near = np.empty((len(flat), len(_AROUND)), np.int32)
+    near = np.empty((len(_AROUND), len(flat)), np.int32)
     for place, (down, along) in enumerate(_AROUND):
-        near[:, place] = _find_flat(flat, flat + down * n_columns + along)
+        near[place] = _find_flat(flat, flat + down * n_columns + along)
     return Cells(n_columns, flat, distances_of_inner(inside), near)
 
 
@@ -71,7 +71,7 @@ def flood_cells(
 
     Parameters
     ----------
-    near : (k, 9) int
+    near : (9, k) int
         As of `Cells`.
     far_m : (k,) float64
         Distance of each cell to the outline of ground.
@@ -80,8 +80,8 @@ def flood_cells(
     most_m : float
         Distances beyond this count as this: what is as wide is one basin.
     """
-    basin = np.zeros(len(near) + 1, np.int32)
-    number = np.full(len(near) + 1, -1, np.int32)
+    basin = np.zeros(near.shape[1] + 1, np.int32)
+    number = np.full(near.shape[1] + 1, -1, np.int32)
     widest_m = np.zeros(1)
     meetings = []
     most = max(round(most_m / cell_m), 1)
@@ -112,7 +112,9 @@ def _grow(basin: IntArray, cells: IntArray, near: IntArray) -> None:
     """Give cells the basin beside them; over and over, while any is."""
     rest = cells[basin[cells] == 0]
     while len(rest):
-        beside = basin[near[rest]].max(axis=1)
+        beside = np.zeros(len(rest), np.int32)
+        for step in near:
+            np.maximum(beside, basin[step[rest]], out=beside)
         if not beside.any():
             return
         basin[rest] = beside
@@ -122,25 +124,43 @@ def _grow(basin: IntArray, cells: IntArray, near: IntArray) -> None:
 def _connect(cells: IntArray, number: IntArray, near: IntArray) -> tuple[int, IntArray]:
     """Return how many groups of connected cells there are, and the group of each, from 0.
 
-    `number` is -1 for all cells, before and after.
+    Groups are numbered by their first cells. First cells that follow one another in a row are made
+    one, of which there are few.
+
+    Parameters
+    ----------
+    cells : (n,) int, increasing
+    number : (k + 1,) int
+        -1 for all cells, before and after.
     """
-    number[cells] = np.arange(len(cells))
-    # links to cells before are the same, seen from there
-    beside = number[near[cells, _AROUND.index((0, 0)) + 1 :]]
+    number[cells] = 0
+    is_first = number[near[_AROUND.index((0, -1)), cells]] < 0
+    run = np.cumsum(is_first) - 1
+    number[cells] = run
+    pairs: list[IntArray] = [np.empty((0, 2), np.int64)]
+    for step in ((1, -1), (1, 0), (1, 1)):
+        below = number[near[_AROUND.index(step), cells]]
+        is_link = below >= 0
+        links = np.column_stack([run[is_link], below[is_link]])
+        pairs.append(links[np.any(np.diff(links, axis=0, prepend=-1), axis=1)])
     number[cells] = -1
-    one, step = np.nonzero(beside >= 0)
-    pairs = (one, beside[one, step])
-    links = coo_array((np.ones(len(one)), pairs), shape=(len(cells), len(cells)))
-    return connected_components(links, directed=False)
+    n_runs = int(is_first.sum())
+    one, other = np.concatenate(pairs).T
+    links = coo_array((np.ones(len(one)), (one, other)), shape=(n_runs, n_runs))
+    count, of_run = connected_components(links, directed=False)
+    return count, of_run[run]
 
 
 def _touching(basin: IntArray, cells: IntArray, near: IntArray) -> list[tuple[int, int]]:
     """Return the pairs of basins of which one has a cell among those given, beside the other."""
-    beside = basin[near[cells]]
-    own = np.broadcast_to(basin[cells, None], beside.shape)
-    is_border = (beside != own) & (beside > 0)
-    pairs = np.sort(np.stack([own[is_border], beside[is_border]], axis=1), axis=1)
-    return [(a, b) for a, b in np.unique(pairs, axis=0).tolist()]
+    own = basin[cells]
+    found: set[tuple[int, int]] = set()
+    for step in near:
+        beside = basin[step[cells]]
+        is_border = (beside != own) & (beside > 0)
+        pairs = np.sort(np.stack([own[is_border], beside[is_border]], axis=1), axis=1)
+        found.update((a, b) for a, b in np.unique(pairs, axis=0).tolist())
+    return sorted(found)
 
 
 class _JoinedBasins:
@@ -184,7 +204,7 @@ def find_borders(basin: IntArray, cells: Cells) -> list[tuple[list[int], IntArra
     borders = []
     own = basin[:-1]
     for step in ((1, 0), (0, 1)):
-        other = basin[cells.near[:, _AROUND.index(step)]]
+        other = basin[cells.near[_AROUND.index(step)]]
         (at,) = np.nonzero((own != other) & (own > 0) & (other > 0))
         pair = np.sort(np.stack([own[at], other[at]], axis=1), axis=1)
         borders.append(np.column_stack([pair, *np.divmod(cells.flat[at], cells.n_columns)]))
