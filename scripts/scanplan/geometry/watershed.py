@@ -44,6 +44,10 @@ class Cells:
         """Return the numbers of cells (n,), of those that are no ground `k`."""
         return _find_flat(self.flat, row * self.n_columns + column)
 
+    def beside(self, down: int, along: int) -> IntArray:
+        """Return the number (k,) of the cell a step from each, down and along of -1 to 1."""
+        return self.near[_AROUND.index((down, along))]
+
 
 def list_cells(inside: BoolArray) -> Cells:
     """Return the cells of a grid (rows, columns) that are inside, none of them at its edge."""
@@ -204,7 +208,7 @@ def find_borders(basin: IntArray, cells: Cells) -> list[tuple[list[int], IntArra
     borders = []
     own = basin[:-1]
     for step in ((1, 0), (0, 1)):
-        other = basin[cells.near[_AROUND.index(step)]]
+        other = basin[cells.beside(*step)]
         (at,) = np.nonzero((own != other) & (own > 0) & (other > 0))
         pair = np.sort(np.stack([own[at], other[at]], axis=1), axis=1)
         borders.append(np.column_stack([pair, *np.divmod(cells.flat[at], cells.n_columns)]))
