@@ -1,10 +1,12 @@
 """Odometry as motions: chained, weighted by the drift expected, where scans say nothing."""
 
 import numpy as np
+from scipy import stats
 
 from scanplan.geometry import se3
 from scanplan.lab.simulation.rover import planar_poses
 from scanplan.recordings import pose_jumps
+from scanplan.registration import pose_scale
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.drift import odometry, submaps
 from scanplan.registration.icp import IcpResult
@@ -121,3 +123,8 @@ def test_after_hundreds_of_resets_poses_are_still_rigid():
 def test_the_way_is_cut_into_lengths():
     pieces = submaps.cut_way(np.array([0.0, 1.0, 3.9, 4.1, 9.0]), 4.0)
     assert [piece.tolist() for piece in pieces] == [[0, 1, 2], [3], [4]]
+
+
+def test_stated_medians_are_those_of_the_distributions():
+    assert {n: stats.chi.median(n) for n in (2, 3)} == odometry._MEDIANS
+    assert stats.chi2.median(6) == pose_scale._MEDIAN

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from scanplan.geometry import se3, twists
-from scanplan.registration import icp, prepared_clouds
+from scanplan.registration import icp, planar_icp, prepared_clouds
 
 
 def box_points(n, rng, *, planar=False, size=(4.0, 3.0, 2.5)):
@@ -290,3 +290,8 @@ def test_thinning_in_the_plane_leaves_the_points_as_they_are(order):
     given = xyz_m.copy()
     prepared_clouds.thin_voxels(xyz_m, planar=True, voxel_m=0.1)
     np.testing.assert_array_equal(xyz_m, given)
+
+
+@given(st.lists(st.floats(0, 1e3), min_size=1, max_size=30))
+def test_medians_are_numpys_to_the_bit(values):
+    assert planar_icp._median(np.array(values)) == np.median(values)

@@ -18,7 +18,7 @@ from scanplan.store import tables
 def scans(tmp_path):
     path = tmp_path / "scans.parquet"
     with tables.open_scan_writer(path, planar=False) as write:
-        for scan_id in range(0, 50, 2):
+        for scan_id in range(0, 200, 2):
             write(scan_id, np.full((3, 3), scan_id))
     return path
 
@@ -28,7 +28,7 @@ def test_each_scan_is_worked_on_once_in_order(scans, threads):
     results = per_scan.map_scans(
         first_point, scans, label="test", threads=threads, per_scan={4: {"shift": 0.5}}, factor=10
     )
-    assert results == [(i, i * 10 + 0.5 * (i == 4)) for i in range(0, 50, 2)]
+    assert results == [(i, i * 10 + 0.5 * (i == 4)) for i in range(0, 200, 2)]
 
 
 def test_workers_end_with_their_stage(scans, tmp_path):

@@ -10,21 +10,16 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from scipy import ndimage
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.geometry.bare_parts import draw_way
-from scanplan.geometry.bitmap import Grid, distances_to_outline, fill_polygons
+from scanplan.geometry.bitmap import Grid, fill_polygons
 from scanplan.geometry.parted_ground import FURNITURE_M2, part_enough
 from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.types import BoolArray, FloatArray, IntArray
-
-_NARROWER = 0.75  # of the widest on either side: a corridor's pillars and cupboards leave more
-_NARROWER_UNVISITED = 0.8  # where nobody went on no way says that both sides are one room
+from scanplan.geometry.watershed import NARROWER, find_borders, flood_cells, list_cells
+from scanplan.types import FloatArray
 
 
 def find_narrow_places(
@@ -69,20 +64,19 @@ def find_narrow_places(
     if filled.is_empty:
         return []
     grid = _fit_grid(filled, cell_m)
-    inside = fill_polygons([filled], grid)
-    far_m = distances_to_outline(inside) * cell_m
+    cells = list_cells(fill_polygons([filled], grid))
+    far_m = cells.far * cell_m
     way = draw_way(visited_m, cell_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
-    is_visited = np.zeros(far_m.shape, bool)
-    is_visited[row, column] = True
-    basin = _flood(far_m, is_visited, max_width_m / 2, cell_m)
-    visited = set(basin[row, column].tolist())
+    places = np.unique(cells.find(row, column))
+    basin = flood_cells(cells.near, far_m, places, max_width_m / 2, cell_m)
+    visited = set(basin[places].tolist())
     # what is wider around a place than this is much wider
     reach_m = 3 * max_width_m
     lines = []
-    for pair, cells in _borders(basin):
-        row, column = cells[np.argmax(far_m[cells[:, 0], cells[:, 1]])]
+    for pair, border in find_borders(basin, cells):
+        row, column = border[np.argmax(far_m[cells.find(*border.T)])]
         middle_m = grid.low_m + (np.array([column, row]) + 0.5) * cell_m
         near = overlays.clip_areas(filled, *(middle_m - reach_m), *(middle_m + reach_m))
         line = _shortest_across(near, middle_m)
@@ -126,138 +120,6 @@ def _fill_islands(ground: BaseGeometry, walls: BaseGeometry) -> BaseGeometry:
     # a wall between two doors stands alone, too
     islands = [hole for hole in small if overlays.intersect_areas(hole, walls).area < hole.area / 2]
     return overlays.unite_areas([*parts, *islands], grid=SHORTEST_M)
-
-
-def _flood(far_m: FloatArray, is_visited: BoolArray, most_m: float, cell_m: float) -> IntArray:
-    """Return the basin of each cell, 0 outside, of ground flooded from its widest places down.
-
-    Basins stay apart that meet where it is much narrower than at the widest place of either; the
-    less narrow, if one of them is a part of ground that was visited and the other is not.
-
-    Parameters
-    ----------
-    far_m : (rows, columns) float64
-        Distance of each cell to the outline of ground, 0 outside.
-    is_visited : (rows, columns) bool
-    most_m : float
-        Distances beyond this count as this: what is as wide is one basin.
-    """
-    basin = np.zeros(far_m.size, np.int32)
-    number = np.full(far_m.size, -1, np.int32)
-    widest_m = np.zeros(1)
-    meetings = []
-    steps = far_m.shape[1] * np.repeat((-1, 0, 1), 3) + np.tile((-1, 0, 1), 3)
-    # ground is little of what lies around it
-    inside = np.flatnonzero(far_m)
-    most = max(round(most_m / cell_m), 1)
-    level_of = np.minimum(np.floor(far_m.flat[inside] / cell_m + 0.5), most).astype(np.int32)
-    order = np.argsort(-level_of, kind="stable")
-    of_level, level_of = inside[order], level_of[order]
-    for level in range(level_of[0] if len(level_of) else 0, 0, -1):
-        cells = of_level[np.searchsorted(-level_of, -level) : np.searchsorted(-level_of, 1 - level)]
-        _grow(basin, cells, steps)
-        rest = cells[basin[cells] == 0]
-        count, fresh = _connect(rest, number, steps)
-        basin[rest] = fresh + len(widest_m)
-        widest_m = np.append(widest_m, np.zeros(count))
-        np.maximum.at(widest_m, basin[rest], far_m.flat[rest])
-        meetings += [(*pair, level * cell_m) for pair in _touching(basin, cells, steps)]
-    parts = _JoinedBasins(widest_m)
-    for one, other, level_m in meetings:
-        parts.meet(one, other, level_m, _NARROWER_UNVISITED)
-    visited = np.isin(parts.joined, parts.joined[basin[is_visited.ravel()]])
-    joined = _JoinedBasins(widest_m)
-    for one, other, level_m in meetings:
-        is_looked_into = visited[one] != visited[other]
-        joined.meet(one, other, level_m, _NARROWER_UNVISITED if is_looked_into else _NARROWER)
-    return joined.joined.astype(np.int32)[basin].reshape(far_m.shape)
-
-
-def _grow(basin: IntArray, cells: IntArray, steps: IntArray) -> None:
-    """Give cells, of flat indices, the basin beside them; over and over, while any is."""
-    rest = cells[basin[cells] == 0]
-    while len(rest):
-        near = basin[rest[:, None] + steps].max(axis=1)
-        if not near.any():
-            return
-        basin[rest] = near
-        rest = rest[near == 0]
-
-
-def _connect(cells: IntArray, number: IntArray, steps: IntArray) -> tuple[int, IntArray]:
-    """Return how many groups of connected cells there are, and the group of each, from 0.
-
-    `number` is -1 for all cells, before and after.
-    """
-    number[cells] = np.arange(len(cells))
-    beside = number[cells[:, None] + steps]
-    number[cells] = -1
-    one, step = np.nonzero(beside >= 0)
-    pairs = (one, beside[one, step])
-    links = coo_array((np.ones(len(one)), pairs), shape=(len(cells), len(cells)))
-    return connected_components(links, directed=False)
-
-
-def _touching(basin: IntArray, cells: IntArray, steps: IntArray) -> list[tuple[int, int]]:
-    """Return the pairs of basins of which one has a cell among those given, beside the other."""
-    beside = basin[cells[:, None] + steps]
-    own = np.broadcast_to(basin[cells, None], beside.shape)
-    is_border = (beside != own) & (beside > 0)
-    pairs = np.sort(np.stack([own[is_border], beside[is_border]], axis=1), axis=1)
-    return [(a, b) for a, b in np.unique(pairs, axis=0).tolist()]
-
-
-class _JoinedBasins:
-    """Which basins were joined, by number from 1; 0 is no basin.
-
-    Parameters
-    ----------
-    widest_m : (n,) float64
-        Distance at the widest place of each.
-    """
-
-    def __init__(self, widest_m: FloatArray) -> None:
-        self._widest_m = widest_m
-        self.joined = np.arange(len(widest_m))
-        self._apart: set[tuple[int, int]] = set()
-
-    def meet(self, one: int, other: int, level_m: float, narrower: float) -> None:
-        """Join two basins that touch at a level, unless it is so much narrower than both."""
-        weak, strong = sorted(self.joined[[one, other]].tolist(), key=lambda b: self._widest_m[b])
-        pair = (min(weak, strong), max(weak, strong))
-        if weak == strong or pair in self._apart:
-            return
-        if level_m < narrower * self._widest_m[weak]:
-            self._apart.add(pair)
-            return
-        self.joined[self.joined == weak] = strong
-        renamed = [
-            sorted((strong if a == weak else a, strong if b == weak else b)) for a, b in self._apart
-        ]
-        self._apart = {(a, b) for a, b in renamed}
-
-
-def _borders(basin: IntArray) -> list[tuple[list[int], IntArray]]:
-    """Return two basins, and cells (n, 2: row, column), of each place where basins touch."""
-    borders = []
-    for axis in (0, 1):
-        other = np.roll(basin, -1, axis)
-        row, column = np.nonzero((basin != other) & (basin > 0) & (other > 0))
-        pair = np.sort(np.stack([basin[row, column], other[row, column]], axis=1), axis=1)
-        borders.append(np.column_stack([pair, row, column]))
-    rows = np.concatenate(borders)
-    pairs, of_pair = np.unique(rows[:, :2], axis=0, return_inverse=True)
-    places = []
-    for number in range(len(pairs)):
-        cells = np.unique(rows[of_pair.ravel() == number, 2:], axis=0)
-        first = cells.min(axis=0)
-        here = np.zeros(cells.max(axis=0) - first + 1, bool)
-        here[tuple((cells - first).T)] = True
-        label = np.zeros(here.shape, np.int64)
-        ndimage.label(here, np.ones((3, 3)), output=label)
-        for place in range(1, int(label.max()) + 1):
-            places.append((pairs[number].tolist(), np.argwhere(label == place) + first))
-    return places
 
 
 def _shortest_across(ground: BaseGeometry, middle_m: FloatArray) -> FloatArray | None:
@@ -320,4 +182,4 @@ def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
     places_m = line.mean(axis=0) + away_m[:, None] * across
     beside = [_line_across(ground, place_m, way) for place_m in places_m]
     widest_m = max((_length_m(other) for other in beside if other is not None), default=0.0)
-    return width_m < _NARROWER * widest_m
+    return width_m < NARROWER * widest_m

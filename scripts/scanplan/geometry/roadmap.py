@@ -11,13 +11,14 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.geometry.bitmap import distances_to_outline
+from scanplan.geometry.watershed import Cells, list_cells
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance
 ROOMY_M = 0.6  # from an obstacle: the way keeps the middle of doors, with no detour in rooms
 _NARROW = 3.0  # a step at an obstacle costs 1 + this times its length, falling to 1 at ROOMY_M
 _PLENTY_M = 1.5  # free space about a place that makes it the middle of a room
+_STRIP = 256  # rows: what is looked at twice around strips is little
 
 
 @dataclass(frozen=True)
@@ -60,14 +61,16 @@ def make_grid(part: BaseGeometry, clearance_m: float, cell_m: float) -> RoadmapG
     y = np.arange(y0 - cell_m, y1 + 2 * cell_m, cell_m)
     inner = overlays.buffer_shapes(part, -_MARGIN_M)
     shapely.prepare(inner)
-    inside = shapely.contains_xy(inner, *np.meshgrid(x, y))
-    near_m = distances_to_outline(inside) * cell_m + clearance_m
-    middle = _is_middle(near_m, cell_m)[inside]
-    near_m = near_m[inside]
+    inside = np.empty((len(y), len(x)), bool)
+    for row, y_m in enumerate(y.tolist()):
+        inside[row] = shapely.contains_xy(inner, x, y_m)
+    cells = list_cells(inside)
+    near_m = cells.far * cell_m + clearance_m
+    middle = _is_middle(inside, near_m, clearance_m, cell_m)
     cost = 1 + _NARROW * np.clip(1 - (near_m - clearance_m) / ROOMY_M, 0, 1)
-    row, column = np.nonzero(inside)
+    row, column = np.divmod(cells.flat, len(x))
     xy_m = np.column_stack([x[column], y[row]])
-    return RoadmapGrid(xy_m, near_m, middle, _costs_of_steps(inside, cost, cell_m))
+    return RoadmapGrid(xy_m, near_m, middle, _costs_of_steps(cells, cost, cell_m))
 
 
 def connected_grid(grid: RoadmapGrid, start_m: Sequence[float] | None = None) -> RoadmapGrid:
@@ -113,30 +116,34 @@ def nearest_cell(grid: RoadmapGrid, xy_m: Sequence[float]) -> int:
     return int(np.argmin(np.hypot(*(grid.xy_m - np.asarray(xy_m)).T)))
 
 
-def _is_middle(near_m: FloatArray, cell_m: float) -> BoolArray:
-    """Return which cells of a raster have as much space as any near them, or plenty."""
-    ridge_m = maximum_filter(near_m, 1 + 2 * round(ROOMY_M / 2 / cell_m))
-    return near_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M)
+def _is_middle(
+    inside: BoolArray, near_m: FloatArray, clearance_m: float, cell_m: float
+) -> BoolArray:
+    """Return which cells inside a raster have as much space as any near them, or plenty."""
+    reach = round(ROOMY_M / 2 / cell_m)
+    of_row = np.concatenate([[0], np.cumsum(np.count_nonzero(inside, axis=1))])
+    middle = np.empty(len(near_m), bool)
+    # strip by strip: what lies around the ground is much
+    for first in range(0, len(inside), _STRIP):
+        last = min(first + _STRIP, len(inside))
+        low, high = max(first - reach, 0), min(last + reach, len(inside))
+        raster_m = np.full((high - low, inside.shape[1]), clearance_m)
+        raster_m[inside[low:high]] = near_m[of_row[low] : of_row[high]]
+        ridge_m = maximum_filter(raster_m, 1 + 2 * reach)
+        is_most = raster_m >= np.minimum(ridge_m - cell_m / 2, _PLENTY_M)
+        own = slice(first - low, last - low)
+        middle[of_row[first] : of_row[last]] = is_most[own][inside[first:last]]
+    return middle
 
 
-def _costs_of_steps(inside: BoolArray, cost: FloatArray, cell_m: float) -> csr_array:
+def _costs_of_steps(cells: Cells, cost: FloatArray, cell_m: float) -> csr_array:
     """Return the costs (n, n) of steps between neighbours, diagonal ones among them."""
-    n = np.count_nonzero(inside)
-    number = np.full(inside.shape, -1)
-    number[inside] = np.arange(n)
-    steps = [_steps(number, cost, dy, dx, cell_m) for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1))]
+    n = len(cells.flat)
+    steps = []
+    for dy, dx in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        beside = cells.beside(dy, dx)
+        (a,) = np.nonzero(beside < n)
+        b = beside[a]
+        steps.append((a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2))
     a, b, costs = (np.concatenate(column) for column in zip(*steps, strict=True))
     return coo_array((costs, (a, b)), shape=(n, n)).tocsr()
-
-
-def _steps(
-    number: IntArray, cost: FloatArray, dy: int, dx: int, cell_m: float
-) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return pairs of neighbouring cells in one direction, and what the step costs."""
-    rows, columns = number.shape
-    here = number[: rows - dy, max(-dx, 0) : columns - max(dx, 0)].ravel()
-    there = number[dy:, max(dx, 0) : columns + min(dx, 0)].ravel()
-    both = (here >= 0) & (there >= 0)
-    a = here[both]
-    b = there[both]
-    return a, b, cell_m * np.hypot(dx, dy) * (cost[a] + cost[b]) / 2

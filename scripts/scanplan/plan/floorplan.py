@@ -236,11 +236,16 @@ class FloorPlan:
         half_m = half_m + np.nan_to_num(bow_m)
         return buffer_lines(centrelines_m(self.openings), half_m)
 
+    @cached_property
+    def all_gaps(self) -> BaseGeometry:
+        """What all of them cut out together."""
+        return overlays.unite_areas(self.gaps)
+
     def solid(self, state: str) -> BaseGeometry:
         """Return the footprint of the walls of one state and known thickness, less openings."""
         bodies = self.known_bodies[self.walls["state"][self.thick] == state]
         merged = overlays.unite_areas(bodies, grid=_GRID_M)
-        return overlays.subtract_areas(merged, overlays.unite_areas(self.gaps), grid=_GRID_M)
+        return overlays.subtract_areas(merged, self.all_gaps, grid=_GRID_M)
 
     def single(self, state: str) -> Array:
         """Return the surfaces of one state with nothing known behind them, less openings.
@@ -255,12 +260,15 @@ class FloorPlan:
         is_one_sided = ~self.thick & (self.walls["state"] == state)
         faces = line_shapes(centrelines_m(self.faces)[is_loose])
         lines = np.concatenate([self._surfaces[is_one_sided], faces])
-        # they end at the surfaces of the walls that they meet
-        hidden = overlays.unite_areas(
+        parts = shapely.get_parts(overlays.subtract_lines(lines, self._hides_lines))
+        return parts[shapely.length(parts) > 0]
+
+    @cached_property
+    def _hides_lines(self) -> BaseGeometry:
+        # lines end at the surfaces of the walls that they meet
+        return overlays.unite_areas(
             [*self.gaps, *overlays.buffer_shapes(self.known_bodies, _GRID_M, quad_segs=8)]
         )
-        parts = shapely.get_parts(overlays.subtract_lines(lines, hidden))
-        return parts[shapely.length(parts) > 0]
 
     @cached_property
     def assumed(self) -> BaseGeometry:

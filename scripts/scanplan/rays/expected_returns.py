@@ -73,6 +73,70 @@ class SentRays:
         return expected, occluded, occluded < STRAY_SHARE * expected
 
 
+@dataclass(frozen=True, eq=False)
+class WatchedColumns:
+    """Columns of a surface, and the views that look at them from its side and near enough.
+
+    Attributes
+    ----------
+    rays : ray_set.RaySet
+    looking, scan : (v,) int64
+        Index of each view, and its scan.
+    distance_m : (v, n) float64
+        From its sensor to the middle of each column, level.
+    column_deg : (v, n) float64
+        The azimuth that a column fills; of those that it sees too obliquely nothing is expected,
+        `is_square`.
+    is_square : (v, n) bool
+    azimuth_rad : (v, n) float64 or None
+        Towards each column, of planar scans.
+    width : int
+        As of `SentRays`.
+    cell, height_m, is_returned : (k,) int64, float64, bool
+        Of the views' rays to the columns: view and column, `v * n + column`; how high above the
+        floor; and whether it ended at the surface or beyond.
+    """
+
+    rays: RaySet
+    looking: IntArray
+    scan: IntArray
+    distance_m: FloatArray
+    column_deg: FloatArray
+    is_square: BoolArray
+    azimuth_rad: FloatArray | None
+    width: int
+    cell: IntArray
+    height_m: FloatArray
+    is_returned: BoolArray
+
+    def per_deg_below(self, height_m: float) -> FloatArray:
+        """Return how many returns to a degree of azimuth are usual below a height, (v, n).
+
+        Of planar scans all are above the floor, and below any height there.
+        """
+        if self.azimuth_rad is not None:
+            if height_m <= 0:
+                return np.zeros(self.distance_m.shape)
+            return self.rays.beams.per_deg_at(self.scan, self.azimuth_rad, self.distance_m)
+        rise_m = height_m + self.rays.floor_z_m - self.rays.sensors_m[self.scan, 2, None]
+        elevation_rad = np.arctan2(rise_m, self.distance_m)
+        return usual_returns.count_below(self.rays.usual, self.scan[:, None], elevation_rad)
+
+    def expect_returns(self, low_per_deg: FloatArray, high_per_deg: FloatArray) -> FloatArray:
+        """Return the returns (v, n) to be expected between heights, of `per_deg_below` of both."""
+        return (high_per_deg - low_per_deg) * self.column_deg * self.is_square
+
+    def count_sent(self, heights_m: tuple[float, float], expected: FloatArray) -> SentRays:
+        """Return the rays that were sent to the columns between heights above the floor."""
+        bottom_m, top_m = heights_m
+        is_inside = (self.height_m >= bottom_m) & (self.height_m < top_m)
+        occluded, returned = (
+            np.bincount(self.cell[kind], minlength=expected.size).reshape(expected.shape)
+            for kind in (is_inside & ~self.is_returned, is_inside & self.is_returned)
+        )
+        return SentRays(self.looking, expected, occluded, returned, self.width)
+
+
 def count_sent_rays(
     rays: RaySet,
     face: FaceRays,
@@ -81,7 +145,24 @@ def count_sent_rays(
     column_m: float,
     heights_m: tuple[float, float],
 ) -> SentRays:
-    """Return the rays that were sent to the columns of a surface.
+    """Return the rays that were sent to the columns of a surface between two heights.
+
+    Parameters
+    ----------
+    heights_m : (float, float)
+        From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
+    rays, face, low_m, count, column_m
+        As of `watch_columns`.
+    """
+    columns = watch_columns(rays, face, low_m, count, column_m)
+    expected = columns.expect_returns(*map(columns.per_deg_below, heights_m))
+    return columns.count_sent(heights_m, expected)
+
+
+def watch_columns(
+    rays: RaySet, face: FaceRays, low_m: float, count: int, column_m: float
+) -> WatchedColumns:
+    """Return the columns of a surface as views look at them, whatever the height.
 
     Parameters
     ----------
@@ -91,50 +172,6 @@ def count_sent_rays(
         Where along its line the first column begins.
     count : int
         Number of columns.
-    heights_m : (float, float)
-        From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
-
-    Returns
-    -------
-    SentRays
-        Of the views from the side of the line's normal and from near enough.
-    """
-    views = face.views
-    is_looking, expected = expect_returns(rays, face, low_m, count, column_m, heights_m)
-    high_m = low_m + column_m * count
-    bottom_m, top_m = heights_m
-    grazing_m = _GRAZING * views.side_m
-    view, along_m, height_m = face.view, face.along_m, face.height_m
-    is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
-    is_inside &= (height_m >= bottom_m) & (height_m < top_m)
-    is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
-    (rows,) = np.nonzero(is_inside)
-    behind_m = face.behind_m.take(rows)
-    column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
-    row = np.cumsum(is_looking) - 1
-    cell = row.take(view.take(rows)) * count + np.minimum(column, count - 1)
-    is_returned = behind_m >= -ON_M
-    occluded, returned = (
-        np.bincount(cell[kind], minlength=expected.size).reshape(expected.shape)
-        for kind in (~is_returned, is_returned)
-    )
-    # of one beam there are few; as many columns on either side
-    width = 2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH
-    (looking,) = np.nonzero(is_looking)
-    return SentRays(looking, expected, occluded, returned, width)
-
-
-def expect_returns(
-    rays: RaySet,
-    face: FaceRays,
-    low_m: float,
-    count: int,
-    column_m: float,
-    heights_m: tuple[float, float],
-) -> tuple[BoolArray, FloatArray]:
-    """Return which views look at the columns, and the returns (v, n) to be expected of these.
-
-    Parameters as of `count_sent_rays`.
     """
     views = face.views
     high_m = low_m + column_m * count
@@ -143,45 +180,34 @@ def expect_returns(
     is_near = np.hypot(views.side_m, np.maximum(beyond_m, 0)) <= NEAR_M
     is_looking = is_near & (beyond_m <= grazing_m) & (views.side_m >= views.least_side_m)
     (looking,) = np.nonzero(is_looking)
+    side_m = views.side_m[looking, None]
     away_m = low_m + column_m * (np.arange(count) + 0.5) - views.sensor_along_m[looking, None]
-    distance_m = np.hypot(away_m, views.side_m[looking, None])
+    distance_m = np.hypot(away_m, side_m)
+    azimuth_rad = None
     if rays.planar:
         # from the shortest way to the plane
-        turn_rad = np.arctan2(away_m, views.side_m[looking, None])
         normal_x, normal_y = views.normal[looking].T[:, :, None]
-        azimuth_rad = np.arctan2(-normal_y, -normal_x) + turn_rad
-        per_deg = rays.beams.per_deg_at(views.scan[looking], azimuth_rad, distance_m)
-    else:
-        per_deg = _returns_per_deg(rays, views.scan[looking], distance_m, heights_m)
-    expected = per_deg * np.rad2deg(column_m * views.side_m[looking, None] / distance_m**2)
-    expected *= np.abs(away_m) < grazing_m[looking, None]
-    return is_looking, expected
-
-
-def _returns_per_deg(
-    rays: RaySet,
-    scans: IntArray,
-    distance_m: FloatArray,
-    heights_m: tuple[float, float],
-) -> FloatArray:
-    """Return how many returns scans (s,) usually have to a degree of azimuth, (s, n).
-
-    Parameters
-    ----------
-    distance_m : (s, n) float64
-        How far away, level.
-    heights_m : (float, float)
-        From where to where.
-    """
-    low, high = (
-        usual_returns.count_below(
-            rays.usual,
-            scans[:, None],
-            np.arctan2(height_m + rays.floor_z_m - rays.sensors_m[scans, 2, None], distance_m),
-        )
-        for height_m in heights_m
+        azimuth_rad = np.arctan2(-normal_y, -normal_x) + np.arctan2(away_m, side_m)
+    view, along_m = face.view, face.along_m
+    is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
+    is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
+    (rows,) = np.nonzero(is_inside)
+    column = ((along_m.take(rows) - low_m) / column_m).astype(np.int64)
+    row = np.cumsum(is_looking) - 1
+    return WatchedColumns(
+        rays=rays,
+        looking=looking,
+        scan=views.scan[looking],
+        distance_m=distance_m,
+        column_deg=np.rad2deg(column_m * side_m / distance_m**2),
+        is_square=np.abs(away_m) < grazing_m[looking, None],
+        azimuth_rad=azimuth_rad,
+        # of one beam there are few; as many columns on either side
+        width=2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH,
+        cell=row.take(view.take(rows)) * count + np.minimum(column, count - 1),
+        height_m=face.height_m.take(rows),
+        is_returned=face.behind_m.take(rows) >= -ON_M,
     )
-    return high - low
 
 
 def sum_neighbours(rows: Array, width: int) -> FloatArray:

@@ -43,19 +43,25 @@ def find_lost(
     edges_m : (r + 1,) float64
         Of the rows of heights; those of planar scans are infinite.
     """
-    columns = (low_m, n_columns, column_m)
+    columns = expected_returns.watch_columns(rays, face, low_m, n_columns, column_m)
     found: list[LostRays] = []
+    # each of an edge once: it takes most of the time
+    below = map(columns.per_deg_below, edges_m.tolist())
+    low_per_deg = next(below)
     for first in range(0, len(edges_m) - 1, _BANDS):
         edges = edges_m[first : first + _BANDS + 1].tolist()
-        sent = expected_returns.count_sent_rays(rays, face, *columns, (edges[0], edges[-1]))
+        of_edges = [low_per_deg, *itertools.islice(below, len(edges) - 1)]
+        low_per_deg = of_edges[-1]
+        expected = columns.expect_returns(of_edges[0], of_edges[-1])
+        sent = columns.count_sent((edges[0], edges[-1]), expected)
         missing = sent.missing()
         view, column = np.nonzero(missing)
-        of_band = missing[view, column] / np.maximum(sent.expected[view, column], _TINY)
+        of_band = missing[view, column] / np.maximum(expected[view, column], _TINY)
         scan = face.views.scan[sent.view[view]]
-        for number, heights_m in enumerate(itertools.pairwise(edges)):
+        for number, of_heights in enumerate(itertools.pairwise(of_edges)):
             # of a row that the beams hardly reach as little is lost
-            _, of_row = expected_returns.expect_returns(rays, face, *columns, heights_m)
-            own = np.minimum(of_row[view, column], sent.expected[view, column])
+            of_row = columns.expect_returns(*of_heights)
+            own = np.minimum(of_row[view, column], expected[view, column])
             row = np.full(len(view), first + number)
             found.append(LostRays(scan, column, row, own * of_band))
     return LostRays(*map(np.concatenate, zip(*found, strict=True)))

@@ -4,6 +4,7 @@ A message is any object with the fields of the ROS definition. No loop runs over
 """
 
 import struct
+import sys
 from typing import Any
 
 import numpy as np
@@ -51,7 +52,8 @@ def read_header(raw: bytes, *, ros2: bool) -> tuple[int, str]:
 
 def clean_frame_name(text: str) -> str:
     """Return a frame id without the leading slash of early ROS 1."""
-    return text.lstrip("/")
+    # every message has its own: of a million poses that is one
+    return sys.intern(text.lstrip("/"))
 
 
 def stamp_to_ns(stamp: Any) -> int:

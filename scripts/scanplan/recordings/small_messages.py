@@ -1,5 +1,6 @@
 """The small messages of a survey, read in one pass: cloud stamps, poses, transforms."""
 
+from array import array
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -18,7 +19,7 @@ class PoseSample(NamedTuple):
 
     t_ns: int
     receive_ns: int
-    row: list[float]
+    row: "array[float]"
     parent: str
     child: str
 
@@ -28,7 +29,7 @@ class TransformSample(NamedTuple):
 
     t_ns: int
     receive_ns: int
-    row: list[float]
+    row: "array[float]"
 
 
 class _CloudSample(NamedTuple):
@@ -103,9 +104,10 @@ class SmallMessages:
             sample = TransformSample(t_ns, receive_ns, self._read_row(item.transform))
             self.transforms.setdefault((static, parent, child), []).append(sample)
 
-    def _read_row(self, pose: Any) -> list[float]:
+    def _read_row(self, pose: Any) -> "array[float]":
         row = messages.pose_to_row(pose)
-        return [*(self._unit_m * value for value in row[:3]), *row[3:]]
+        # a third of a list's memory: there are a dozen for each scan of a long recording
+        return array("d", [*(self._unit_m * value for value in row[:3]), *row[3:]])
 
     def finish(self, where: str, cloud: topics.Topic) -> None:
         """Make arrays of the clouds' stamps, and log what is odd.

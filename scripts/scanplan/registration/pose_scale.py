@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy import stats
 
 from scanplan.geometry import se3, twists
 from scanplan.registration.constraints import PoseConstraint
@@ -13,6 +12,7 @@ from scanplan.types import FloatArray, IntArray
 _SIGMA_M = 0.05  # of a pose, as localisers have it; only how pairs compare depends on it
 _SIGMA_DEG = 1.0
 _N_FREE = 6  # of a motion
+_MEDIAN = 5.348120627447118  # of chi squared with as many; scipy.stats takes 0.4 s to say so
 _ROUNDS = 10  # of robust weights, which change by next to nothing after five
 
 
@@ -61,6 +61,6 @@ def estimate_scale(
         excess = (weight @ told) / (weight @ known)
         left = off - excess * longer
         squared = np.einsum("ni,nij,nj->n", left, information, left)
-        spread = np.median(squared) / stats.chi2.median(_N_FREE)
+        spread = np.median(squared) / _MEDIAN
         weight = 1 / (1 + squared / (_N_FREE * max(spread, np.finfo(float).tiny))) ** 2
     return 1 + excess, float(np.sqrt(max(spread, 1.0) / (weight @ known)))

@@ -68,7 +68,7 @@ def _list_shapes(survey: Survey) -> Iterator[tuple[str, BaseGeometry]]:
     plan = survey.plan
     for piece in shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)):
         yield "furniture", survey.place(piece)
-    gaps = overlays.unite_areas(plan.gaps)
+    gaps = plan.all_gaps
     walls = overlays.subtract_areas(overlays.unite_areas(plan.bodies), gaps)
     yield "wall", survey.place(walls)
     yield "opening", survey.place(gaps)

@@ -204,7 +204,7 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
 
 def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
     bodies = overlays.unite_areas(plan.known_bodies[is_wanted[plan.thick]])
-    return overlays.subtract_areas(bodies, overlays.unite_areas(plan.gaps))
+    return overlays.subtract_areas(bodies, plan.all_gaps)
 
 
 def draw_area(

@@ -41,11 +41,15 @@ def sample_face(face: FaceInterval) -> FaceSamples | None:
     if face.n_points < ENOUGH_RAYS:
         return None
     column = np.floor((seen.occupied_m[points] - face.low_m) / CELL_M).astype(np.int64)
-    pairs = np.column_stack([column, seen.occupied_scan[points]])
-    of_pair, pair, count = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    scan = seen.occupied_scan[points]
+    # as one number: pairs are sorted ten times as slowly
+    n_scans_most = int(scan.max(initial=0)) + 1
+    pairs = column * n_scans_most + scan
+    of_pair, pair, count = np.unique(pairs, return_inverse=True, return_counts=True)
     places = np.stack([seen.occupied_m[points], seen.occupied_off_m[points]])
-    along_m, off_m = (np.bincount(pair.ravel(), of) / count for of in places)
-    _, row, n_scans = np.unique(of_pair[:, 0], return_inverse=True, return_counts=True)
+    along_m, off_m = (np.bincount(pair, of) / count for of in places)
+    of_column = of_pair // n_scans_most
+    _, row, n_scans = np.unique(of_column, return_inverse=True, return_counts=True)
     if len(n_scans) < _LEAST_COLUMNS:
         return None
     x_m, y_m = (np.bincount(row, of) / n_scans for of in (along_m, off_m))

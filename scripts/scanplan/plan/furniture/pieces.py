@@ -110,7 +110,7 @@ def find_pieces(
     is_there = is_taken.copy()
     is_there.flat[returns.cell] = True
     # pauses of a cell join
-    labels = np.zeros(grid.shape, np.int64)
+    labels = np.zeros(grid.shape, np.int32)
     ndimage.label(ndimage.binary_dilation(is_there, np.ones((3, 3), bool)), output=labels)
     found = []
     for rows, cells in _group_by_label(labels, returns.cell, np.flatnonzero(is_there)):

@@ -172,24 +172,28 @@ def _count_side(
         occluded_within_m=expected_returns.NEAR_M,
     )
     end = _sort_ends(face, side.deep_m, is_only=is_only)
-    row = np.searchsorted(grid.row_edges_m, face.height_m, "right") - 1
-    row = np.where(row < grid.n_rows, row, -1)
     column = grid.columns_of(side.line, face.along_m)
-    kept = np.flatnonzero((end >= 0) & (row >= 0) & (column >= 0))
+    kept = np.flatnonzero((end >= 0) & (column >= 0))
+    row = np.searchsorted(grid.row_edges_m, face.height_m[kept], "right") - 1
+    is_counted = (row >= 0) & (row < grid.n_rows)
+    kept, row = kept[is_counted], row[is_counted]
     shape = (int(place.max(initial=0)) + 1, grid.n_columns, grid.n_rows, 2, N_ENDS)
-    cells = (place[face.scan[kept]], column[kept], row[kept])
-    is_oblique = (~_is_square(rays, face)[kept]).astype(np.int64)
-    ended = np.ravel_multi_index((*cells, is_oblique, end[kept]), shape)
+    cells = (place[face.scan[kept]], column[kept], row)
+    is_oblique = (~_is_square(rays, face, kept)).astype(np.int64)
+    # many end alike: numbers are sorted and counted faster than their order is found
+    ended, number = np.unique(
+        np.ravel_multi_index((*cells, is_oblique, end[kept]), shape), return_counts=True
+    )
     lost = find_lost(rays, face, float(span_m[0]), grid.n_columns, COLUMN_M, grid.row_edges_m)
     column = grid.columns_of(side.line, span_m[0] + (lost.column + 0.5) * COLUMN_M)
     known = np.flatnonzero((column >= 0) & rays.is_level[lost.scan])
     of_lost = (place[lost.scan[known]], column[known], lost.row[known], 1, LOST)
     ended = np.append(ended, np.ravel_multi_index(np.broadcast_arrays(*of_lost), shape))
-    number = np.append(np.ones(len(kept)), lost.n_rays[known])
+    number = np.append(number.astype(float), lost.n_rays[known])
     key, inverse = np.unique(ended, return_inverse=True)
     weight = np.bincount(inverse, number, len(key)).astype(float)  # of nothing it counts in int
     # what one place says of a cell is one witness
-    _, of_cell = np.unique(key // (2 * N_ENDS), return_inverse=True)
+    of_cell = np.cumsum(np.diff(key // (2 * N_ENDS), prepend=-1) > 0) - 1
     weight /= np.maximum(np.bincount(of_cell, weight), 1.0)[of_cell]
     size = int(np.prod(shape[1:]))
     counts = np.asarray(np.bincount(key % size, weight, minlength=size), float).reshape(shape[1:])
@@ -210,11 +214,12 @@ def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
     return end
 
 
-def _is_square(rays: RaySet, face: FaceRays) -> BoolArray:
-    """Return which rays meet the face nearly square."""
-    away_m = face.along_m - face.views.sensor_along_m.take(face.view)
-    up_m = face.height_m + rays.ground_z_m - rays.sensors_m[face.scan, 2]
-    return np.hypot(away_m, up_m) <= SQUARE * np.abs(face.views.side_m).take(face.view)
+def _is_square(rays: RaySet, face: FaceRays, kept: IntArray) -> BoolArray:
+    """Return which of some rays (k,) meet the face nearly square."""
+    view = face.view[kept]
+    away_m = face.along_m[kept] - face.views.sensor_along_m[view]
+    up_m = face.height_m[kept] + rays.ground_z_m - rays.sensors_m[face.views.scan[view], 2]
+    return np.hypot(away_m, up_m) <= SQUARE * np.abs(face.views.side_m)[view]
 
 
 def _is_asked(side: Side, grid: _Grid) -> BoolArray:
