@@ -1,6 +1,7 @@
 """Where a map changes on the way, and what ties the parts: odometry, scans, or nothing."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -58,6 +59,7 @@ def drive(
     edges = [
         SimpleNamespace(source=a, target=b, kind="sequence", fit=fit, fitness=1.0) for a, b in ends
     ]
+    optimised: Any = SimpleNamespace(edges=edges, weight=np.ones(len(edges)))
     return DrivenMap(
         scan_ids=np.arange(2 * _N),
         t_ns=((np.arange(2 * _N) + later * pause_s) * 1e9).astype(np.int64),
@@ -65,7 +67,7 @@ def drive(
         world_from_cloud=poses,
         recorded=poses,
         steps=se3.invert_pose(true[:-1]) @ true[1:] if knows_odometry else None,
-        optimised=SimpleNamespace(edges=edges, weight=np.ones(len(edges))),
+        optimised=optimised,
         clouds=read,
     )
 

@@ -1,6 +1,6 @@
 """Map of a drive whose poses are a localiser's: what is asked of it to find whether it can be."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from scanplan.registration.drift import folds, submaps
 from scanplan.registration.drift.odometry import measure_way
 from scanplan.registration.mapping import StepsBetween
 from scanplan.registration.multiway import OptimisedMap
-from scanplan.registration.prepared_clouds import PreparedScans
+from scanplan.registration.prepared_clouds import PreparedCloud, PreparedScans
 from scanplan.registration.registration_settings import DriftSettings
 from scanplan.types import FloatArray, IntArray
 
@@ -35,8 +35,8 @@ class DrivenMap:
     steps : (n - 1, 4, 4) float64 or None
         Of each cloud the pose of the next one by odometry; NaN where it does not know.
     optimised : multiway.OptimisedMap
-    clouds : prepared_clouds.PreparedScans
-        Theirs.
+    clouds : callable
+        Returns those of some rows, as `prepared_clouds.PreparedScans` does.
     settled : sequence of int
         Rows of scans of which is known how they lie to the one before.
     """
@@ -48,7 +48,7 @@ class DrivenMap:
     recorded: FloatArray
     steps: FloatArray | None
     optimised: OptimisedMap
-    clouds: PreparedScans
+    clouds: Callable[[IntArray], list[PreparedCloud]]
     settled: Sequence[int] = ()
 
     @cached_property
