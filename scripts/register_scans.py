@@ -5,18 +5,15 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from scanplan.project import provenance
 from scanplan.registration import (
     contradictions,
     gate_shares,
     mapping,
-    prepared_clouds,
+    mending,
     results,
 )
 from scanplan.registration.candidates import chunk_files, registered_candidates
-from scanplan.registration.constraints import neighbour_reach_m
 from scanplan.registration.misreading import Misreading
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, witnesses, workers
@@ -80,9 +77,10 @@ def register_scans(
         odometry = None
         if moved is not None and not survey.is_odometry:
             odometry = registered_candidates.read_odometry(moved, t_ns)
-        verdicts, constraints = mapping.optimise_map(
-            survey, found.results, found.edges, thinned, run, limits, odometry
+        placed = mending.place_candidates(
+            survey, t_ns, found.results, found.edges, thinned, run, limits, odometry
         )
+        verdicts, constraints = placed.results, placed.optimised
         results.check_any_kept(verdicts, found.n_dropped, recordings[0])
         gate_shares.check_any_survives(
             verdicts, survey, found.read_points, limits.limits, recordings[0]
@@ -100,16 +98,7 @@ def register_scans(
         measured.append(contradictions.measure_repeats(found.n_repeated, len(survey.scan_ids)))
         some = contradictions.choose_some(kept)
         measured.append(contradictions.measure_ranges(found.read_points(some)))
-        if constraints is not None:
-            measured += constraints.witnesses
-        if constraints is not None and limits.graph.optimise and not survey.is_odometry:
-            clouds = prepared_clouds.PreparedScans(
-                thinned, survey.planar, neighbour_reach_m(limits.limits)
-            )
-            is_kept = np.isin(found.kept, kept)
-            measured += contradictions.measure_map(
-                survey, t_ns, verdicts, constraints, clouds.take(np.flatnonzero(is_kept)), odometry
-            )
+        measured += placed.witnesses
         _write_kept_scans(scans, survey, verdicts, kept, found.read_points(kept))
     spoken = witnesses.tell("register_scans", measured)
     log.log_line(

@@ -9,6 +9,7 @@ import numpy as np
 
 from faults import drives, judging, lies, making, remedies
 from scanplan.errors import StageError
+from scanplan.stage.witness_table import PLAN
 from scanplan.store import pose_columns, schemas, tables
 
 GROUP = "drives with one lie"
@@ -106,6 +107,10 @@ def _judge_lie(place, made, name, right):
     except StageError as error:
         return (judging.SILENT if name == "none" else judging.CLEAR), str(error), None
     found = _read_places(place)
+    is_noted = said and making.read_verdict(place).worth == PLAN and name != "none"
+    if is_noted:
+        # what stands beside a plan is what was mended
+        said = ""
     if name == "none":
         return (judging.SILENT if said else judging.SOUND), said, found
     if said:
@@ -128,7 +133,12 @@ def _read_places(place):
 
 
 def _are_same(found, right):
-    """Return whether scans lie where they lie without a lie."""
-    common = found.keys() & right.keys()
-    off_m = [np.linalg.norm(found[t_ns] - right[t_ns]) for t_ns in common]
-    return len(common) > len(right) / 2 and max(off_m) <= _HEALED_M
+    """Return whether scans lie to one another as they do without a lie."""
+    common = sorted(found.keys() & right.keys())
+    if len(common) <= len(right) / 2:
+        return False
+    there, here = (np.array([places[t_ns] for t_ns in common]) for places in (found, right))
+    there, here = (xyz_m - xyz_m.mean(axis=0) for xyz_m in (there, here))
+    left, _, back = np.linalg.svd(there.T @ here)
+    turn = left @ np.diag([1, 1, np.linalg.det(left @ back)]) @ back
+    return float(np.linalg.norm(there @ turn - here, axis=1).max()) <= _HEALED_M

@@ -20,7 +20,7 @@ _TABLES = ("poses", "motion", "scans", "registration", "edges", "seen", "order",
 _RATINGS = {"elements": "validation", "rays": "validation_rays", "confidence": "confidence"}
 
 
-def make_plan(place, recordings, *, until="plan", **topics):
+def make_plan(place, recordings, *, until="plan", part=None, **topics):
     """Run the stages up to the plan, or to the registration; return what is doubted.
 
     Parameters
@@ -28,6 +28,8 @@ def make_plan(place, recordings, *, until="plan", **topics):
     place : pathlib.Path
     recordings : list of str
     until : {"plan", "registration"}
+    part : int, optional
+        Of the section `registration`.
     **topics
         Settings of the section `input` that are not the default.
 
@@ -49,7 +51,7 @@ def make_plan(place, recordings, *, until="plan", **topics):
         recordings,
         *(files[name] for name in ("poses", "scans", "registration", "edges")),
         reading=section("input") | topics,
-        settings=section("registration"),
+        settings=section("registration") | {"part": part},
         moved=files["motion"],
     )
     if until == "registration":

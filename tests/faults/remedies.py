@@ -1,7 +1,7 @@
 """What a verdict advises, carried out on the drive that it was given of: a plan comes of it.
 
 Each takes the drives through a floor by name and what was found of the lie, and returns drives to
-make a plan of each alone, and settings of the section `input`.
+make a plan of each alone, and keywords of `making.make_plan`, the same for all or for each its own.
 """
 
 from dataclasses import replace
@@ -25,13 +25,6 @@ _TURN = {
 def follow_odometry(drive, _):
     """Return the drive, of which the odometry's poses are read."""
     return [drive], {"pose_topic": "/odom"}
-
-
-def cut_there(drive, finding):
-    """Return both parts of the drive, cut when the map changed, as the remedy says."""
-    after_s = float(finding.remedy.rpartition(" s after its first scan")[0].rpartition(" ")[2])
-    is_before = drive.t_ns < drive.t_ns[0] + int(after_s * 1e9)
-    return [drive.take(is_before), drive.take(~is_before)], {}
 
 
 def invert_poses(drive, _):
@@ -58,6 +51,13 @@ def state_mount(name):
     return state
 
 
+def ask_for_parts(drive, finding):
+    """Return the drive for each of its two parts, of which one is named."""
+    named = int(finding.remedy.partition("advanced.registration.part: ")[2].partition(" ")[0])
+    assert named in (1, 2), finding.remedy
+    return [drive, drive], [{"part": part} for part in (1, 2)]
+
+
 def drive_apart(parts, _):
     """Return recordings of which each is a dataset of its own."""
     return parts, {}
@@ -76,12 +76,9 @@ def set_units(unit, *keys):
 
 _NOTHING = None
 REMEDIES = {
-    "map jumps by 3 m, 1 m and 5 degrees": follow_odometry,
-    "localiser unconverged for a quarter": follow_odometry,
-    "localiser turned about at the end": follow_odometry,
     "origin drifts by 1 cm a scan": follow_odometry,
-    "map jumps by 3 m, 1 m and 5 degrees, no odometry": cut_there,
-    "two storeys on one another, no odometry": cut_there,
+    "two storeys on one another": ask_for_parts,
+    "two storeys on one another, no odometry": ask_for_parts,
     "poses inverted": invert_poses,
     "quaternion w first": put_w_last,
     "poses 0.5 s late": set_clocks,
@@ -115,10 +112,11 @@ def try_remedies(place, driven, *, planar, tally, names=tuple(REMEDIES)):
     for number, name in enumerate(name for name in names if name in known):
         made = known[name](driven)
         first = _find_first(place / f"{number}", made)
-        parts, topics = REMEDIES[name](made, first)
+        parts, settings = REMEDIES[name](made, first)
+        of_each = settings if isinstance(settings, list) else [settings] * len(parts)
         left = [
-            making.make_plan(*_write(place / f"{number}_{i}", [part]), **topics).contradictions
-            for i, part in enumerate(parts)
+            making.make_plan(*_write(place / f"{number}_{i}", [part]), **given).contradictions
+            for i, (part, given) in enumerate(zip(parts, of_each, strict=True))
         ]
         said = "; ".join(sentence for sentences in left for sentence in sentences)
         outcome = judging.SILENT if first == _NOTHING or said else judging.SOUND

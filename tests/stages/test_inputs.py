@@ -92,7 +92,7 @@ def laser_plan(tmp_path_factory):
     return small_flat.plan_of(folder / "plan", files)
 
 
-@pytest.mark.parametrize(("planar", "half_deg"), [(True, 90), (False, 180)])
+@pytest.mark.parametrize(("planar", "half_deg"), [(True, 90), (False, 180), (False, 135)])
 def test_a_scanner_in_front_and_one_behind(tmp_path, bag_plan, laser_plan, planar, half_deg):
     both = small_flat.FRONT_AND_REAR
     files = small_flat.write_scanners(tmp_path, both, planar=planar, half_deg=half_deg)

@@ -120,20 +120,32 @@ def test_odometry_beside_a_localiser_says_how_the_sensor_moved(run, monkeypatch,
         np.testing.assert_allclose(steps[:, 0, 3], [0.125, 0.25, 0.125], atol=1e-9)
 
 
-@pytest.mark.parametrize("off_m", [0.0, 1.5])
-def test_a_map_that_jumps_is_told_where_odometry_goes_on(run, off_m):
+def jumping(off_m):
+    """Twelve scans, from the seventh on in a map that is off, and odometry that goes on."""
     maker, entries = bag_making.Maker(), survey(12, moved=range(6, 12), off_m=off_m)
     for i in range(12):
         t_ns = bag_making.START_NS + i * STEP_NS
         entries.append(("/odom", t_ns, maker.odometry(t_ns, (0.1 * i, 0, 0))))
-    _, registered, _ = run(entries, with_motion=True)
-    told = doubts.read_doubts(registered, schemas.REGISTRATION).contradictions
+    return entries
+
+
+@pytest.mark.parametrize("off_m", [0.0, 1.5])
+def test_a_map_that_jumps_is_laid_back_where_odometry_goes_on(run, off_m):
+    _, registered, _ = run(jumping(off_m), with_motion=True)
+    found = tables.read_table(registered, schemas.REGISTRATION)
+    x_m = 1.0 + 0.1 * np.arange(12)
+    np.testing.assert_allclose(found["x_m"][found["kept"]], x_m[found["kept"]], atol=0.02)
+    told = doubts.read_doubts(registered, schemas.REGISTRATION).findings
     # the scans behind the jump fit the others no more
-    assert ["the map jumps" in each and "odometry" in each for each in told] == (
-        [False, True] if off_m else []
-    )
-    assert not off_m or "scans fit one another" in told[0]
-    assert not off_m or "set input.pose_topic to the odometry's" in told[1]
+    assert [each.witness for each in told] == (["misfit", "mended map"] if off_m else [])
+    assert not off_m or "by odometry" in told[1].said
+
+
+def test_a_part_is_asked_for_by_number(run):
+    with pytest.raises(StageError, match=re.escape("registration.part: is 2")):
+        run(survey(), "second", part=2)
+    whole, first = run(survey()), run(survey(), "first", part=1)
+    assert [path.read_bytes() for path in whole] == [path.read_bytes() for path in first]
 
 
 def test_scans_without_points_are_named_and_left_out(run):

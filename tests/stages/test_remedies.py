@@ -12,8 +12,7 @@ from faults import drives, judging, lying_drives, making, remedies
 from scanplan.stage.witness_table import PLAN, SKETCH
 
 FEW = (
-    "map jumps by 3 m, 1 m and 5 degrees",
-    "map jumps by 3 m, 1 m and 5 degrees, no odometry",
+    "two storeys on one another",
     "quaternion w first",
     "sensor turned by 90 degrees",
     "ranges in feet",
@@ -22,10 +21,12 @@ FEW = (
 )
 
 
+LASER = lying_drives.SENSORS["in the plane"]
+
+
 @pytest.fixture(scope="module")
 def rooms(tmp_path_factory):
-    laser = lying_drives.SENSORS["in the plane"]
-    return drives.drive_through(tmp_path_factory.mktemp("rooms"), settings=laser)
+    return drives.drive_through(tmp_path_factory.mktemp("rooms"), settings=LASER)
 
 
 def test_a_sketch_becomes_a_plan_where_its_rooms_are_looked_into(rooms, tmp_path):
@@ -45,6 +46,8 @@ def test_a_sketch_becomes_a_plan_where_its_rooms_are_looked_into(rooms, tmp_path
 
 def test_what_is_advised_mends_the_drive(rooms, tmp_path):
     tally = judging.Tally()
-    remedies.try_remedies(tmp_path, {"rooms": rooms}, planar=True, tally=tally, names=FEW)
+    above = drives.drive_through(tmp_path / "above", "storey above", settings=LASER)
+    driven = {"rooms": rooms, "storey above": above}
+    remedies.try_remedies(tmp_path, driven, planar=True, tally=tally, names=FEW)
     assert tally.wrong == []
     assert tally.counts["remedies of lies"][judging.SOUND] == len(FEW)

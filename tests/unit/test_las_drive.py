@@ -114,6 +114,17 @@ def test_a_gigantic_count_ends_in_a_line(tmp_path, suffix):
     assert path.name in refusal(tmp_path)
 
 
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+@pytest.mark.parametrize("n_records", [10**5, 2**32 - 1])
+def test_records_that_are_not_there_are_not_read(tmp_path, suffix, n_records):
+    """Each that is stated took a microsecond or more, 2 ** 32 of them hours."""
+    path = drive(tmp_path, suffix=suffix) / f"a{suffix}"
+    data = bytearray(path.read_bytes())
+    data[100:104] = n_records.to_bytes(4, "little")
+    path.write_bytes(data)
+    assert f"states {n_records} records" in refusal(tmp_path)
+
+
 def test_a_table_of_gigantic_length_ends_in_a_line(tmp_path):
     path = drive(tmp_path) / "a.laz"
     data = bytearray(path.read_bytes())

@@ -82,3 +82,10 @@ def test_a_list_of_columns_is_written_between_its_marks():
     names = "`kind`, `number`, `global_id`"
     filled = f"a\n<!-- columns ELEMENT_IDS -->\n{names}\n<!-- end -->\nb\n"
     assert column_lists.fill_columns(text) == filled
+
+
+def test_tests_that_a_page_names_are_there():
+    named = set(re.findall(r"`(test_\w+)`", (ROOT / "docs/inputs.md").read_text("utf-8")))
+    files = (ROOT / "tests").rglob("test_*.py")
+    known = {name for path in files for name in re.findall(r"def (test_\w+)", path.read_text())}
+    assert len(named) > 20 and named <= known, named - known

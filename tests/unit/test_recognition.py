@@ -77,13 +77,15 @@ def test_rooms_laid_over_one_another_are_told_as_a_fold():
     poses = planar_poses([[0, 0], [50, 0], [0.5, 0]], [0, 0, 0])
     way_m = np.array([0.0, 50.0, 99.5])
     sound = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(6, 6), 0)]
-    assert folds.measure_folds(sound[:2], poses, way_m) == []
+    assert folds.measure_folds(folds.compare_places(sound[:2], poses, way_m)) == []
     folded = [submap(room(6, 6), 0), submap(room(6, 6), 1), submap(room(3, 3), 2)]
-    other, moved = folds.measure_folds(folded, poses, way_m)
+    other, moved = folds.measure_folds(folds.compare_places(folded, poses, way_m))
     assert other.is_beyond and other.more["n_places"] == 1 and not moved.is_beyond
     assert other.name == "drifting other place"
     t_ns = np.array([0, 30, 80]) * 10**9
-    (other,) = folds.measure_folds(folded, poses, way_m, drifts=False, t_ns=t_ns)
+    (other,) = folds.measure_folds(
+        folds.compare_places(folded, poses, way_m), drifts=False, t_ns=t_ns
+    )
     assert other.is_beyond and other.name == "other place"
 
 
@@ -92,8 +94,25 @@ def test_when_the_map_changed_is_told():
     poses = planar_poses(np.zeros((6, 2)), np.zeros(6))
     way_m, t_ns = 20.0 * np.arange(6), 100 * 10**9 * np.arange(6)
     maps = [submap(room(6, 6) if i < 3 else room(3, 3), i) for i in range(6)]
-    (other,) = folds.measure_folds(maps, poses, way_m, drifts=False, t_ns=t_ns)
+    (other,) = folds.measure_folds(
+        folds.compare_places(maps, poses, way_m), drifts=False, t_ns=t_ns
+    )
     assert other.is_beyond and other.more["after_s"] == 200.0
+    assert folds.find_seams(folds.compare_places(maps, poses, way_m), []) == [(1, 3, 4)]
+    # known already
+    assert folds.find_seams(folds.compare_places(maps, poses, way_m), [3]) == []
+
+
+def test_each_of_several_changes_is_found_and_a_room_that_moved_once_is_none():
+    poses = planar_poses(np.zeros((9, 2)), np.zeros(9))
+    way_m = 20.0 * np.arange(9)
+    sizes_m = [6, 6, 6, 3, 3, 3, 5, 5, 5]
+    maps = [submap(room(size_m, size_m), i) for i, size_m in enumerate(sizes_m)]
+    found = folds.compare_places(maps, poses, way_m)
+    assert folds.find_seams(found, []) == [(1, 3, 4), (4, 6, 7)]
+    once = [submap(room(3 if i == 4 else 6, 6), i) for i in range(9)]
+    found = folds.compare_places(once, poses, way_m)
+    assert (found.lacking > 0.2).any() and folds.find_seams(found, []) == []
 
 
 def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():
@@ -112,10 +131,11 @@ def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():
     # two of three places, or one, which a table that was moved would be, too
     other = [submap([*sides, end], 2), submap([*sides, end], 3)]
     twins = [submap([*sides, wall([-0.8, 8], [0.8, 8])], 0), submap(room(6, 6), 1), *other]
-    other, moved = folds.measure_folds(twins, poses, way_m)
+    other, moved = folds.measure_folds(folds.compare_places(twins, poses, way_m))
     assert moved.is_beyond and moved.value == pytest.approx(2 / 3) and not other.is_beyond
     assert not any(
-        found.is_beyond for found in folds.measure_folds(twins[:3], poses[:3], way_m[:3])
+        found.is_beyond
+        for found in folds.measure_folds(folds.compare_places(twins[:3], poses[:3], way_m[:3]))
     )
 
 

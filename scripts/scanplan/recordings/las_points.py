@@ -16,6 +16,9 @@ _MOST_A_BYTE = 100  # points: of equal ones packed to nothing hardly as many
 _PLACE = struct.Struct("<q")
 _TABLE = struct.Struct("<II")
 """What the table of a .laz begins with: its version, and how many chunks it is of."""
+_SIZES = struct.Struct("<94xHII")
+"""What a header begins with: its length, where points begin, how many records lie in between."""
+_RECORD = 54  # bytes of a record that is empty
 
 
 class LasPoints(NamedTuple):
@@ -67,6 +70,7 @@ def list_blocks(path: Path) -> Iterator[LasBlock]:
         If its header cannot be read, or states more points than the file holds.
     """
     length = path.stat().st_size
+    _check_records(path)
     try:
         with laspy.open(path, laz_backend=laspy.LazBackend.Lazrs) as file:
             header = file.header
@@ -87,6 +91,17 @@ def list_blocks(path: Path) -> Iterator[LasBlock]:
         yield LasBlock(path, first, min(_BLOCK, n_points - first))
 
 
+def _check_records(path: Path) -> None:
+    """Refuse more records than lie before the points: each is read, where there is nothing, too."""
+    with path.open("rb") as file:
+        begun = file.read(_SIZES.size)
+    if len(begun) < _SIZES.size:
+        raise _damaged(path, f"{len(begun)} bytes are no header")
+    size, begin, n_records = _SIZES.unpack(begun)
+    if size + n_records * _RECORD > begin:
+        raise _damaged(path, f"states {n_records} records before byte {begin}, where points begin")
+
+
 def _count_chunks(path: Path, begin: int, length: int) -> int:
     """Return how many chunks the table of a .laz states, whose place stands before the points."""
     with path.open("rb") as file:
@@ -102,6 +117,6 @@ def _count_chunks(path: Path, begin: int, length: int) -> int:
             raise _damaged(path, error) from None
 
 
-def _damaged(path: Path, error: Exception) -> StageError:
-    reason = " ".join(str(error).split())[:100]
+def _damaged(path: Path, error: Exception | str) -> StageError:
+    reason = " ".join(str(error).split())[:100] or type(error).__name__
     return StageError(f"{path}: damaged ({reason}); copy or export it again")

@@ -4,27 +4,20 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from scanplan.geometry import se3
-from scanplan.registration import constraints, joins, loops, pauses, pose_lean, pose_scale
-from scanplan.registration.batches import CandidateScans
-from scanplan.registration.drift import submaps
-from scanplan.registration.drift.odometry import measure_way
-from scanplan.registration.mapping import StepsBetween
+from scanplan.registration import joins, pauses, pose_lean, pose_scale
+from scanplan.registration.drift import folds
+from scanplan.registration.driven_map import DrivenMap
 from scanplan.registration.misreading import NONE_MEETS, UNTRIED, Misreading
-from scanplan.registration.multiway import OptimisedMap
-from scanplan.registration.prepared_clouds import PreparedScans
-from scanplan.registration.registration_settings import DriftSettings
-from scanplan.registration.sequential import ScanResult
+from scanplan.registration.sequential import OTHER_MAP, ScanResult
 from scanplan.stage.witness_table import CUT, WITNESSES
 from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import FloatArray, IntArray
 
 _STILL = 1e-3  # metres, and of a turn radians: less than any localiser's noise
-_UNASKED = ("too_few_points", "pose_gap")
+_UNASKED = ("too_few_points", "pose_gap", OTHER_MAP)
 _FEET = 0.3048  # metres
 _NEAR_FEET = 0.1  # of that: so few alignments are right where units differ
 _ASKED = 10  # scans whose points tell how far walls are
-_STATION_M = 0.5  # scans nearer to one another add next to nothing to a submap
 _SURE = 2.0  # standard deviations of a scale
 _ALL_BUT = (2.0, 98.0)  # percent of heights: a pose or two that err are no storey
 
@@ -84,53 +77,21 @@ def measure_repeats(n_repeated: int, n_asked: int) -> Measured:
     )
 
 
-def measure_map(
-    survey: CandidateScans,
-    t_ns: IntArray,
-    scan_results: Sequence[ScanResult],
-    optimised: OptimisedMap,
-    clouds: PreparedScans,
-    odometry: StepsBetween | None,
-) -> list[Measured]:
-    """Measure whether a map of a localiser's poses can be.
-
-    Parameters
-    ----------
-    t_ns : (n,) int64
-        Stamps of the candidates.
-    scan_results : sequence of sequential.ScanResult
-        One per candidate.
-    clouds : prepared_clouds.PreparedScans
-        Of those that are kept.
-    odometry : callable, optional
-        See `mapping.optimise_map`.
-    """
-    kept = np.flatnonzero([result.kept for result in scan_results])
-    scan_ids = survey.scan_ids[kept]
-    rows = kept.tolist()
-    levels = [constraints.level_pose(survey.priors[row], planar=survey.planar) for row in rows]
-    level_from_sensor = np.array(levels)
-    sensor_from_level = se3.invert_pose(level_from_sensor)
-    world_from_sensor = np.array([scan_results[row].world_from_sensor for row in rows])
-    world_from_cloud = world_from_sensor @ sensor_from_level
-    steps = None
-    if odometry is not None:
-        steps = level_from_sensor[:-1] @ odometry(kept) @ sensor_from_level[1:]
-    is_tied = joins.find_tied(scan_ids, optimised)
-    jumps = joins.find_map_jumps(t_ns[kept], world_from_cloud, is_tied, steps, clouds)
-    recorded = survey.priors[kept] @ sensor_from_level
-    scale, sigma = pose_scale.estimate_scale(scan_ids, recorded, optimised.edges)
-    xyz_m = world_from_sensor[:, :3, 3]
+def measure_map(driven: DrivenMap) -> list[Measured]:
+    """Measure whether a map of a localiser's poses can be."""
+    scan_ids, t_ns, optimised = driven.scan_ids, driven.t_ns, driven.optimised
+    scale, sigma = pose_scale.estimate_scale(scan_ids, driven.recorded, optimised.edges)
+    xyz_m = driven.world_from_sensor[:, :3, 3]
     lean = state_witness("lean", pose_lean.measure_lean_deg(xyz_m))
     height_m = float(np.ptp(np.percentile(xyz_m[:, 2], _ALL_BUT)))
     return [
-        *_measure_jumps(jumps, scan_ids, t_ns[kept]),
+        *_measure_jumps(driven.jumps, scan_ids, t_ns),
         _measure_scale(scale, sigma),
-        pauses.measure_untied(scan_ids, t_ns[kept], optimised),
+        pauses.measure_untied(scan_ids, t_ns, optimised),
         lean,
         # where the map leans heights say nothing
         state_witness("storeys", 0.0 if lean.is_beyond else height_m),
-        *_measure_places(world_from_cloud, t_ns[kept], clouds),
+        *folds.measure_folds(driven.places, drifts=False, t_ns=t_ns),
     ]
 
 
@@ -192,16 +153,3 @@ def _remedy_jump(by: str, after_s: float) -> str:
     if by != joins.ODOMETRY:
         return cut
     return f"set input.pose_topic to the odometry's, which goes on there, or {cut}"
-
-
-def _measure_places(
-    world_from_cloud: FloatArray, t_ns: IntArray, clouds: PreparedScans
-) -> list[Measured]:
-    """Return how places that the drive passed twice contradict each other."""
-    from scanplan.registration.drift import folds  # scipy's 0.3 s
-
-    way_m = measure_way(world_from_cloud)
-    is_station = loops.choose_stations(world_from_cloud, _STATION_M)
-    pieces = [rows[is_station[rows]] for rows in submaps.cut_way(way_m, DriftSettings.submap_m)]
-    maps = submaps.make_submaps([rows for rows in pieces if len(rows)], clouds, world_from_cloud)
-    return folds.measure_folds(maps, world_from_cloud, way_m, drifts=False, t_ns=t_ns)

@@ -5,7 +5,7 @@ show: their submaps are searched for on one another, wherever the map has them. 
 it went no farther than a walk leads.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -42,30 +42,37 @@ class MapJump(NamedTuple):
         By how much.
     by : str
         What knows.
+    step : (4, 4) float64
+        The known motion: the pose of its cloud in the one before; NaN of a mere pace.
     """
 
     row: int
     shift_m: float
     turn_deg: float
     by: str
+    step: FloatArray
 
 
-def find_tied(scan_ids: IntArray, optimised: OptimisedMap) -> BoolArray:
+def find_tied(scan_ids: IntArray, optimised: OptimisedMap, begins: Sequence[int] = ()) -> BoolArray:
     """Return which scans (n,) an alignment ties to one before them, in every direction.
 
     Parameters
     ----------
     scan_ids : (n,) int, increasing
+    begins : sequence of int, increasing
+        Rows at which another map begins: what ties a scan to one before tells nothing there.
     """
-    tied = [
-        edge.source
+    ends = [
+        (edge.source, edge.target)
         for edge, weight in zip(optimised.edges, optimised.weight, strict=True)
         if edge.kind == "sequence"
         and edge.fit.n_unobservable == 0
         and edge.fitness >= _LEAST_FITNESS
         and weight >= INLIER_WEIGHT
     ]
-    return np.isin(scan_ids, tied)
+    source, target = np.searchsorted(scan_ids, np.array(ends, np.int64).reshape(-1, 2)).T
+    part = np.searchsorted(np.asarray(begins, np.int64), np.arange(len(scan_ids)), side="right")
+    return np.isin(np.arange(len(scan_ids)), source[part[source] == part[target]])
 
 
 def find_map_jumps(
@@ -107,7 +114,13 @@ def find_map_jumps(
     off_m = np.linalg.norm((motion - known)[:, :2, 3], axis=1)
     turn_deg = np.degrees([se3.turn_between_rad(*pair) for pair in zip(known, motion, strict=True)])
     return [
-        MapJump(int(loose[i]), float(off_m[i]), float(turn_deg[i]), one)
+        MapJump(
+            int(loose[i]),
+            float(off_m[i]),
+            float(turn_deg[i]),
+            one,
+            known[i] if one != _PACE else np.full((4, 4), np.nan),
+        )
         for i, one in enumerate(by)
         if one != _NOTHING
     ]

@@ -14,6 +14,22 @@ _LEAST_SCANS = 3  # of a part: a scan or two that fit nothing displace next to n
 def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> Measured:
     """Return the number of pauses without a link between the scans before and after.
 
+    The parameters are those of `find_untied`.
+    """
+    found = find_untied(scan_ids, t_ns, optimised)
+    pause_s = np.diff(t_ns) / 1e9
+    longest = max(found, key=lambda row: pause_s[row], default=0)
+    return state_witness(
+        "untied pauses",
+        len(found),
+        pause_s=pause_s[longest] if found else 0.0,
+        after_s=(t_ns[longest] - t_ns[0]) / 1e9,
+    )
+
+
+def find_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> list[int]:
+    """Return the rows of the last scans before pauses without a link over them.
+
     Parameters
     ----------
     scan_ids : (n,) int, increasing
@@ -27,16 +43,9 @@ def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) 
     ]
     earlier, later = np.searchsorted(scan_ids, np.array(ties, np.int64).reshape(-1, 2)).T
     pause_s = np.diff(t_ns) / 1e9
-    found = [
+    return [
         row
         for row in np.flatnonzero(pause_s > LONGEST_S).tolist()
         if min(row + 1, len(scan_ids) - row - 1) >= _LEAST_SCANS
         and not np.any((earlier <= row) & (later > row))
     ]
-    longest = max(found, key=lambda row: pause_s[row], default=0)
-    return state_witness(
-        "untied pauses",
-        len(found),
-        pause_s=pause_s[longest] if found else 0.0,
-        after_s=(t_ns[longest] - t_ns[0]) / 1e9,
-    )

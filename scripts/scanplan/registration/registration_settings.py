@@ -175,12 +175,16 @@ class RegistrationSettings:
     limits : SequentialSettings
     graph : PoseGraphSettings
     drift : DriftSettings
+    part : int, optional
+        Of a drive in parts that nothing ties the number of the one to take, 1 the first; by default
+        the largest.
     """
 
     batch_size: int
     limits: SequentialSettings
     graph: PoseGraphSettings
     drift: DriftSettings
+    part: int | None = None
 
     def of_stations(self) -> "RegistrationSettings":
         """Return them for surveyed poses: exact to millimetres, and kept though others show none.
@@ -199,11 +203,12 @@ class RegistrationSettings:
 
 def registration_settings(section: Settings) -> RegistrationSettings:
     """Return the `RegistrationSettings` of a section `registration`."""
-    apart = ("batch_size", "graph", "drift")
+    apart = ("batch_size", "graph", "drift", "part")
     limits = {key: value for key, value in section.items() if key not in apart}
     return RegistrationSettings(
         batch_size=section["batch_size"],
         limits=SequentialSettings(**limits),
         graph=PoseGraphSettings(**section["graph"]),
         drift=DriftSettings(**section["drift"]),
+        part=section["part"],
     )

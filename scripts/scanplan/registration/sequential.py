@@ -16,6 +16,8 @@ from scanplan.types import FloatArray
 
 GIVEN_POSES = "none"
 """The method that leaves a survey as it is: its poses are exact, its scans all sound."""
+OTHER_MAP = "other_map"
+"""Why a scan is not kept that lies in a map of its own."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +29,8 @@ class ScanResult:
     kept : bool
     reason : str
         `kept`, `anchor` (kept at the localiser's pose), `pose_gap`, `too_few_points`,
-        `low_prior_fitness`, `icp_diverged`, `low_refined_fitness`, or `unconfirmed` (see
-        `mapping.find_unconfirmed`).
+        `low_prior_fitness`, `icp_diverged`, `low_refined_fitness`, `unconfirmed` (see
+        `mapping.find_unconfirmed`), or `OTHER_MAP` (see `mending`).
     world_from_sensor : (4, 4) float64
         After refinement where the scan is kept, but for one whose refinement is not believed; the
         localiser's otherwise; NaN without a pose.

@@ -17,6 +17,7 @@ _MARKS = {
     "low_refined_fitness": ("+", "#cc79a7", "dropped: little overlap after refinement"),
     "icp_diverged": ("^", "#0072b2", "dropped: refinement went astray"),
     "unconfirmed": ("D", "#999999", "dropped: no scan confirms its place"),
+    "other_map": ("1", "#56b4e9", "left out: in a map of its own"),
     "too_few_points": ("v", "#009e73", "dropped: too few points"),
 }
 _OTHER_MARK, _OTHER_COLOUR = "d", "#e69f00"

@@ -162,6 +162,31 @@ WITNESSES = {
         _OTHER_MAP,
         "{remedy}",
     ),
+    # parts that odometry or scans tie; what contradicts the map that comes of it is told besides
+    "mended map": Witness(
+        0,
+        _COUNT,
+        FOUND,
+        PLAN,
+        "the map changed on the way, and is one again",
+        "the map changed {value} times, and parts of the drive were laid into one map (seconds"
+        " after the first scan, and what ties them: {said})",
+        _OTHER_MAP,
+        "measure a length on site that goes from one part into another",
+    ),
+    "other maps": Witness(
+        0,
+        _COUNT,
+        FOUND,
+        SKETCH,
+        "parts of the drive are left out",
+        "{n_left:,} of {n_scans:,} scans lie in maps of their own, which nothing ties to part"
+        " {chosen} of the drive, of which the plan is (left out, by seconds after the first scan:"
+        " {said})",
+        _OTHER_MAP,
+        "set advanced.registration.part: {other} for a plan of that part, or drive on from a place"
+        " that was seen before",
+    ),
     "scale": Witness(
         0.02,
         _SHARE,

@@ -24,15 +24,22 @@ class ScanCache:
     def __init__(self, path: Path, file: BinaryIO) -> None:
         self.path = path
         self._file = file
-        self._end = [0]
+        self._ranges: list[tuple[int, int]] = []
 
     def __len__(self) -> int:
-        return len(self._end) - 1
+        return len(self._ranges)
 
     def add(self, xyz_m: FloatArray) -> None:
         """Append the points (n, 3) of one more cloud, as float32."""
         self._file.write(np.ascontiguousarray(xyz_m, np.float32).data)
-        self._end.append(self._end[-1] + len(xyz_m))
+        start = self._ranges[-1][1] if self._ranges else 0
+        self._ranges.append((start, start + len(xyz_m)))
+
+    def take(self, numbers: Iterable[int]) -> "ScanCache":
+        """Return a cache of some of these clouds, numbered anew, to read only."""
+        taken = ScanCache(self.path, self._file)
+        taken._ranges = [self._ranges[i] for i in numbers]
+        return taken
 
     def part(self, numbers: Iterable[int]) -> "ScanCachePart":
         """Return an iterable over the clouds of these numbers, which other processes can read too.
@@ -40,8 +47,7 @@ class ScanCache:
         Everything added so far is on disk then.
         """
         self._file.flush()
-        ranges = [(self._end[i], self._end[i + 1]) for i in numbers]
-        return ScanCachePart(str(self.path), ranges)
+        return ScanCachePart(str(self.path), [self._ranges[i] for i in numbers])
 
 
 class ScanCachePart:

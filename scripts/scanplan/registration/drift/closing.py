@@ -149,7 +149,7 @@ class LoopCloser:
         run: Callable[..., Iterator[Any]],
     ) -> list[Link]:
         """Return the pairs of submaps that are recognised."""
-        found = run(_recognise_pairs, self._jobs(pairs, world_from_cloud))
+        found = run(recognise_pairs, self._jobs(pairs, world_from_cloud))
         results = [result for of_job in found for result in of_job]
         return [
             Link(source, target, result)
@@ -224,7 +224,7 @@ class LoopCloser:
         )
 
 
-def _recognise_pairs(
+def recognise_pairs(
     job: Sequence[tuple[Submap, Submap, FloatArray, float, float]],
 ) -> list[recognition.Recognition | None]:
     """Return the pairs of submaps that show the same place beyond doubt, None for the others."""

@@ -79,7 +79,7 @@ def optimise_drifting_poses(
         recorded="odometry's motions",
         witnesses=(
             folds.measure_loose_parts(len(scan_ids), source, target),
-            *folds.measure_folds(maps, solution.world_from_scan, way_m),
+            *folds.measure_folds(folds.compare_places(maps, solution.world_from_scan, way_m)),
         ),
     )
 
