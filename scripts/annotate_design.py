@@ -3,7 +3,8 @@
 import json
 from pathlib import Path
 
-from scanplan.exports.changes import annotated_ifc, bcf_topics, model_facts
+from scanplan.exports.changes import annotated_ifc, model_facts
+from scanplan.exports.data import model_topics
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
@@ -38,7 +39,7 @@ def annotate_design(
     name = Path(design).stem
     at_ns = int(stamps.min()) if len(stamps) else 0
     atomic.write_text(model, annotated_ifc.annotate_model(design, "Scanplan_AsBuilt", facts))
-    atomic.write_bytes(topics, bcf_topics.format_topics(name, found, at_ns))
+    atomic.write_bytes(topics, model_topics.format_topics(name, found, at_ns))
     log.log_line(
         f"annotate_design: {len(facts)} elements with properties, {len(found)} topics of what"
         " differs"

@@ -10,6 +10,7 @@ import shapely
 import scanplan
 from scanplan.exports import grid_map
 from scanplan.exports.data import (
+    doubt_topics,
     element_ids,
     element_tables,
     geopackage,
@@ -82,7 +83,7 @@ def export_files(
         "editable": lambda: _format_editable(
             drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
         ),
-        "bcf": lambda: _format_doubts(drawn, ids, origin),
+        "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
@@ -143,13 +144,6 @@ def _format_editable(
     regular, _ = draft_plan(plan, make_draft_settings(max_change_m, catalogue))
     own_ids = element_ids.take_ids(ids, plan, regular)
     return ifc.format_ifc(regular, own_ids, origin, catalogue=catalogue)
-
-
-def _format_doubts(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> bytes:
-    # its library comes with that of building models
-    from scanplan.exports.data import doubt_topics
-
-    return doubt_topics.format_bcf(plan, ids, origin)
 
 
 def _identify_elements(

@@ -98,7 +98,8 @@ def register_scans(
         measured.append(contradictions.measure_repeats(found.n_repeated, len(survey.scan_ids)))
         some = contradictions.choose_some(kept)
         measured.append(contradictions.measure_ranges(found.read_points(some)))
-        measured += placed.witnesses
+        # scans that were misread say nothing of the map
+        measured += [] if misfit.name == "misread" else placed.witnesses
         _write_kept_scans(scans, survey, verdicts, kept, found.read_points(kept))
     spoken = witnesses.tell("register_scans", measured)
     log.log_line(

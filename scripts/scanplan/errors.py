@@ -17,8 +17,6 @@ MOST_NAMED = 8
 
 EXTRAS = {
     "ifcopenshell": "ifc",
-    "bcf": "ifc",
-    "xsdata": "ifc",
     "pye57": "e57",
     "defusedxml": "e57",
     "open3d": "simulate",

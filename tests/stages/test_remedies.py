@@ -30,12 +30,12 @@ def rooms(tmp_path_factory):
 
 
 def test_a_sketch_becomes_a_plan_where_its_rooms_are_looked_into(rooms, tmp_path):
-    """A scanner of 120 degrees has seen parts of three rooms after three tenths of its way."""
+    """A scanner of 120 degrees has seen parts of two rooms after a quarter of its way."""
     ahead = [np.abs(np.arctan2(cloud[:, 1], cloud[:, 0])) <= np.pi / 3 for cloud in rooms.clouds]
     taken = [cloud[is_ahead] for cloud, is_ahead in zip(rooms.clouds, ahead, strict=True)]
     narrow = replace(rooms, clouds=taken)
     verdicts = []
-    for share in (0.3, 1.0):
+    for share in (0.25, 1.0):
         place = tmp_path / f"{share}"
         place.mkdir()
         making.make_plan(place, [str(narrow.take(narrow.share <= share).write(place / "run"))])

@@ -9,8 +9,8 @@ from bcf.v2.bcfxml import BcfXml
 from helpers import ifc_making
 from scanplan.errors import StageError
 from scanplan.exports.changes.annotated_ifc import annotate_model
-from scanplan.exports.changes.bcf_topics import Topic, format_topics
 from scanplan.exports.changes.model_facts import gather_changes
+from scanplan.exports.data.model_topics import Topic, format_topics
 
 NAME = "Scanplan_AsBuilt"
 T_NS = 1_700_000_000 * 10**9
@@ -45,10 +45,8 @@ def test_topics_are_read_back_with_what_they_select(tmp_path):
     path = tmp_path / "topics.bcf"
     guid = "2ptk1k7qn8_Qk22vjh$0DE"
     topics = [
-        Topic(
-            "Wall 1: deviates by +10.2 cm", "Tolerance 20 mm.", "deviates", guid, (3.0, 4.0, 0.0)
-        ),
-        Topic("wall 7 of the survey: additional", "", "additional", "", (1.0, 2.0, 0.0)),
+        Topic("1", "Wall 1: +10.2 cm", "Tolerance 20 mm.", "deviates", guid, (3.0, 4.0, 0.0)),
+        Topic("7", "wall 7 of the survey: additional", "", "additional", "", (1.0, 2.0, 0.0)),
     ]
     path.write_bytes(format_topics("house", topics, T_NS))
     assert path.read_bytes() == format_topics("house", topics, T_NS)

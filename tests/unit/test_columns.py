@@ -81,7 +81,8 @@ def test_two_scans_may_both_have_something_above():
 
 
 def test_planar_scans_know_no_columns():
-    assert tell(box(2.8, 1.8, 3.2, 2.2), planar=True).kind == PIECE
+    square = box(2.8, 1.8, 3.2, 2.2)
+    assert tell(square, returns(square, [1.0]), planar=True).kind == PIECE
 
 
 def test_other_pieces_stay_as_they_are():

@@ -5,7 +5,7 @@ import pytest
 
 from helpers.ray_making import NORTH, rays, turned
 from scanplan.geometry.lines import Line
-from scanplan.rays.expected_returns import SentRays, count_sent_rays
+from scanplan.rays.expected_returns import ALL_HEIGHTS_M, SentRays, count_sent_rays
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.usual_returns import count_returns_below
 
@@ -97,7 +97,7 @@ def test_of_a_plane_beams_are_expected_where_it_looks(angle_deg):
     looked = rays((sensor_m, ends_m), planar=True)
     line = Line(np.zeros(2), turned([0.0, 1.0], angle_rad))
     face = cast_at_face(looked, line, -2.0, 2.0, at_m=0.08)
-    found = count_sent_rays(looked, face, -2.0, 80, 0.05, (0.0, 1.0))
+    found = count_sent_rays(looked, face, -2.0, 80, 0.05, ALL_HEIGHTS_M)
     assert found.expected[0, :40].sum() == pytest.approx(0, abs=1)
     assert found.expected[0, 40:].sum() == pytest.approx(44.5, abs=1)
     assert found.returned.sum() == pytest.approx(44.5, abs=1)

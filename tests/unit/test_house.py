@@ -49,7 +49,6 @@ HOMES = {
     "ifcopenshell": ("exports/", "design/"),
     "laspy": ("exports/data/point_cloud.py", "recordings/las_points.py"),
     "sqlite3": ("exports/data/geopackage.py",),
-    "bcf": ("exports/data/doubt_topics.py",),
     "trimesh": ("lab/buildings/",),
     "jinja2": ("report/", "thesis/"),
     "matplotlib": ("exports/", "report/", "stage/figure_files.py", "thesis/"),

@@ -37,7 +37,7 @@ CLOUD = ("laz", "cloud.laz")
 """The format and the file of the stage `export_cloud`."""
 
 
-LIBRARIES = {"ifc": "ifcopenshell", "editable": "ifcopenshell", "bcf": "bcf"}
+LIBRARIES = {"ifc": "ifcopenshell", "editable": "ifcopenshell"}
 """What some formats are written by that not every installation has."""
 
 

@@ -82,13 +82,15 @@ def rank_findings(findings: Sequence[Finding]) -> list[Finding]:
     """Return findings, the likeliest cause of all of them first.
 
     What was found by trying it comes before what may be the cause, and that before mere signs; of
-    these what is farthest beyond its limit. A witness that a version of the program had and this
-    one has not comes last.
+    these what is farthest beyond its limit. What leaves a drawing a plan comes behind all that, and
+    a witness that a version of the program had and this one has not comes last.
     """
 
-    def rank(finding: Finding) -> tuple[int, float]:
+    def rank(finding: Finding) -> tuple[bool, int, float]:
         known = WITNESSES.get(finding.witness)
-        return (SIGN + 1 if known is None else known.tells), -finding.beyond
+        if known is None:
+            return True, SIGN + 1, -finding.beyond
+        return known.leaves == PLAN, known.tells, -finding.beyond
 
     return sorted(findings, key=rank)
 

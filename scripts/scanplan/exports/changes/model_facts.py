@@ -9,7 +9,7 @@ import shapely
 from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME
 from scanplan.design.deviations import FAULTS, UNDECIDED, WITHIN
 from scanplan.exports.changes.annotated_ifc import Properties
-from scanplan.exports.changes.bcf_topics import Topic
+from scanplan.exports.data.model_topics import Topic
 from scanplan.types import Array, Columns
 
 _GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, SAME, NOT_SEEN)
@@ -104,6 +104,7 @@ def _list_topics(columns: Columns, floor_m: float) -> Iterator[Topic]:
         name = of["name"] or f"{of['element']} {of['number_built']} of the survey"
         verdict = of["verdict"].replace("_", " ")
         yield Topic(
+            f"{name}/{verdict}",
             f"{name}: {verdict}{_by_words(of)}",
             _explain(of),
             verdict,
