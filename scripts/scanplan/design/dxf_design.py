@@ -5,7 +5,6 @@ lies an opening, whose kind is that of the layer of what is drawn in it. Heights
 """
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.insert import Insert
 from ezdxf.entities.polygon import DXFPolygon
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import readfile
@@ -29,19 +29,12 @@ from scanplan.design.drawn_storey import (
     DrawnWall,
     Solid,
 )
+from scanplan.design.layer_words import KINDS, kind_of_layer
 from scanplan.errors import StageError
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.types import Array, FilePath, FloatArray
 
-_LAYERS = {
-    "wall": r"wall|wand|w[aä]nd|mauer|mur(?!al)",
-    "door": r"door|t[uü]e?r|porte",
-    "window": r"wind|glaz|fenster|fen[eê]tre",
-    "column": r"col(umn|s)|st[uü]e?tz|poteau",
-    "room": r"room|space|raum|zimmer|area(?!-)|pi[eè]ce",
-}
-"""Words in names of layers, by the AIA's guidelines and as German and French offices name them."""
 _HEIGHTS_M = {"door": (0.0, 2.0), "passage": (0.0, 2.0), "window": (0.9, 2.0)}
 """ASSUME sills and lintels, which a plan does not show."""
 _HEIGHT_M = 2.5  # ASSUME of the storey, likewise
@@ -54,6 +47,7 @@ _COVERED = 0.95  # of the ground between two sides that is matter
 _SAGITTA_M = 0.005  # of chords for arcs
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
 _SKIN_M = 1e-3  # what lines that meet are drawn apart
+_DEEPEST = 32  # blocks within one another: a door in a flat in a house is three
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,18 +73,18 @@ def read_storeys(path: FilePath) -> list[DrawnStorey]:
     """
     try:
         document = readfile(path)
-    except (OSError, DXFError, ValueError) as error:
+        if document.units not in [*InsertUnits][1:]:
+            fault = f"states no unit ($INSUNITS is {document.units})"
+            raise StageError(f"{path}: {fault}; export it in metres")
+        scale_m = conversion_factor(InsertUnits(document.units), InsertUnits.Meters)
+        drawn = {kind: [] for kind in KINDS}
+        for entity in document.modelspace():
+            kind = kind_of_layer(entity.dxf.layer)
+            if kind is not None:
+                drawn[kind] += _trace(entity, scale_m)
+    except (OSError, DXFError, ValueError, ArithmeticError) as error:
         fault = f"cannot be read as DXF ({str(error).strip()[:120]})"
         raise StageError(f"{path}: {fault}; export it again") from None
-    unit = InsertUnits(document.units)
-    if unit == InsertUnits.Unitless:
-        raise StageError(f"{path}: states no unit ($INSUNITS is 0); export it in metres")
-    scale_m = conversion_factor(unit, InsertUnits.Meters)
-    drawn = {kind: [] for kind in _LAYERS}
-    for entity in document.modelspace():
-        kind = _kind_of(entity.dxf.layer)
-        if kind is not None:
-            drawn[kind] += _trace(entity, scale_m)
     storey = draw_storey({kind: np.array(lines, object) for kind, lines in drawn.items()})
     if not storey.walls:
         fault = "shows no wall on a layer named after walls, drawn by both sides"
@@ -123,16 +117,19 @@ def draw_storey(lines: dict[str, Array]) -> DrawnStorey:
     return DrawnStorey("model space", 0.0, _HEIGHT_M, drawn, openings, spaces, columns, others)
 
 
-def _kind_of(layer: str) -> str | None:
-    words = layer.casefold()
-    return next((kind for kind, named in _LAYERS.items() if re.search(named, words)), None)
+def _trace(
+    entity: DXFEntity, scale_m: float, within: tuple[str, ...] = ()
+) -> Iterator[BaseGeometry]:
+    """Yield the lines of an entity, those of a block and a hatch with it.
 
-
-def _trace(entity: DXFEntity, scale_m: float) -> Iterator[BaseGeometry]:
-    """Yield the lines of an entity, those of a block and a hatch with it."""
-    if entity.dxftype() == "INSERT":
-        for part in entity.virtual_entities():  # pyright: ignore[reportAttributeAccessIssue]
-            yield from _trace(part, scale_m)
+    `within` are the names of the blocks that it lies in.
+    """
+    if isinstance(entity, Insert):
+        name = entity.dxf.name
+        if name in within or len(within) == _DEEPEST:
+            raise ValueError(f"blocks insert themselves, or too deeply: {' > '.join(within)}")
+        for part in entity.virtual_entities():
+            yield from _trace(part, scale_m, (*within, name))
         return
     if entity.dxftype() not in ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "HATCH"):
         return
