@@ -43,7 +43,7 @@ def compare_design(
     name : str
         Of the dataset.
     settings : dict
-        What `export_plan` is told, and `design_storey`, name or number of a storey.
+        See `stage_settings.select_design`.
     limits : dict
         See `tolerance_file.read_tolerances`.
     version : str

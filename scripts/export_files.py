@@ -1,6 +1,7 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -123,9 +124,10 @@ def _write_mask(
     name: str, draw: Callable[[], GridMap], mode: str
 ) -> dict[str, Callable[[], str | bytes]]:
     """Return what writes a mask of the map, and the file that nav2 reads it by."""
+    drawn = cache(draw)
     return {
-        f"{name}_pgm": lambda: grid_map.format_pgm(draw()),
-        f"{name}_yaml": lambda: grid_map.format_map_yaml(draw(), f"{name}.pgm", mode),
+        f"{name}_pgm": lambda: grid_map.format_pgm(drawn()),
+        f"{name}_yaml": lambda: grid_map.format_map_yaml(drawn(), f"{name}.pgm", mode),
     }
 
 

@@ -1,6 +1,7 @@
 """The plan's files for other programs hold one plan, and its elements keep their ids."""
 
 import json
+from unittest.mock import Mock
 
 import ifcopenshell
 import numpy as np
@@ -17,6 +18,7 @@ from helpers import floorplan_making, house_making, ifc_volumes
 from helpers.default_settings import SETTINGS
 from helpers.toy_rooms import HEIGHT_M
 from scanplan.errors import StageError
+from scanplan.exports import grid_map
 from scanplan.plan import planning
 from scanplan.project import export_formats, stage_settings
 from scanplan.store import schemas, tables
@@ -90,6 +92,16 @@ def test_independent_readers_find_the_same_plan_in_all_files(plan, tmp_path):
     assert len(trimesh.load_scene(files["glb"]).geometry) == 11
     written = tables.read_table(files["ids"], schemas.ELEMENT_IDS)
     assert written["global_id"][written["kind"] == "wall"].tolist() == ids
+
+
+def test_a_mask_is_drawn_once_for_its_image_and_its_settings(plan, tmp_path, monkeypatch):
+    masks = ("draw_keepout", "draw_speed")
+    drawn = {of: Mock(wraps=getattr(grid_map, of)) for of in masks}
+    for of in masks:
+        monkeypatch.setattr(grid_map, of, drawn[of])
+    files = exported(plan, tmp_path, ["keepout_pgm", "keepout_yaml", "speed_pgm", "speed_yaml"])
+    assert [drawn[of].call_count for of in masks] == [1, 1]
+    assert "image: speed.pgm" in files["speed_yaml"].read_text()
 
 
 def test_walls_are_as_high_as_the_ceiling_that_the_scans_show(plan, tmp_path):

@@ -8,6 +8,7 @@ import pytest
 import shapely
 
 from scanplan.design import ifc_file
+from scanplan.design.storey_choice import find_storey
 from scanplan.errors import StageError
 from scanplan.lab.buildings import building, building_route
 
@@ -38,7 +39,7 @@ def storey_of(models):
 
     @functools.cache
     def cut(name, storey):
-        index = ifc_file.find_storey(models[name], storey, name)
+        index = find_storey(models[name].storeys, storey, name, "simulate.site.storey")
         return building.building_of_model(models[name], index, SLICE_M, name)
 
     return cut
@@ -103,4 +104,4 @@ def test_a_building_of_two_storeys_asks_which(models):
     with pytest.raises(
         StageError, match=r"0 'Erdgeschoss' at 0\.00 m, 1 'Dachgeschoss' at 2\.70 m"
     ):
-        ifc_file.find_storey(models["fzk"], None, "AC20-FZK-Haus.ifc")
+        find_storey(models["fzk"].storeys, None, "AC20-FZK-Haus.ifc", "simulate.site.storey")

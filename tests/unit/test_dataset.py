@@ -111,6 +111,14 @@ def test_a_missing_file_is_refused(known, tmp_path):
         dataset.describe_dataset("none", tmp_path / "none.yaml", **known)
 
 
+def test_several_designs_in_a_folder_stop_no_plan(known, tmp_path):
+    (tmp_path / "survey.bag").write_bytes(b"#ROSBAG V2.0")
+    for design in ("a.dxf", "b.ifc"):
+        (tmp_path / design).write_text("")
+    found = dataset.describe_dataset("a", tmp_path, **known)
+    assert dataset.list_results(found) and len(found.designs) == 2
+
+
 def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
     (tmp_path / "a.bag").write_text("x")
     (tmp_path / "dataset.yaml").write_text("poses: {keep_every: 2}")

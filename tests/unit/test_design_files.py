@@ -5,38 +5,45 @@ import yaml
 
 from scanplan.errors import StageError
 from scanplan.project.dataset import Dataset, list_deviations
-from scanplan.project.design_file import find_design
+from scanplan.project.design_file import choose_design, find_designs
 from scanplan.project.tolerance_file import TABLES, read_tolerances
 
 TABLE = {"title": "ours", "upto_m": [3], **{table: [10, 20] for table in TABLES}}
 
 
 def test_the_only_design_in_the_folder_is_it_and_a_key_comes_first(tmp_path):
-    assert find_design(None, tmp_path) is None and find_design(None, None) is None
+    assert find_designs(None, tmp_path) == find_designs(None, None) == ()
     (tmp_path / "House.IFC").write_text("")
-    assert find_design(None, tmp_path) == str(tmp_path / "House.IFC")
+    assert find_designs(None, tmp_path) == (str(tmp_path / "House.IFC"),)
     (tmp_path / "house.dxf").write_text("")
     named = str(tmp_path / "house.dxf")
-    assert find_design(named, tmp_path) == named
-    with pytest.raises(StageError, match=r"several designs.*plan\.design\.file"):
-        find_design(None, tmp_path)
+    assert find_designs(named, tmp_path) == (named,)
+    assert len(find_designs(None, tmp_path)) == 2
+
+
+def test_several_designs_are_refused_where_deviations_are_asked_for():
+    designs = ("floor/House.IFC", "floor/house.dxf")
+    told = r"a has several, House\.IFC, house\.dxf.*plan\.design\.file"
+    with pytest.raises(StageError, match=told):
+        list_deviations(Dataset("a", {}, (), designs=designs))
+    assert choose_design("a", designs[:1]) == designs[0]
 
 
 @pytest.mark.parametrize(("named", "told"), [("house.dwg", "is no .ifc"), ("a.ifc", "not exist")])
 def test_a_design_that_cannot_be_one_is_refused(tmp_path, named, told):
     with pytest.raises(StageError, match=told):
-        find_design(str(tmp_path / named), tmp_path)
+        find_designs(str(tmp_path / named), tmp_path)
 
 
 def test_a_model_is_annotated_and_a_drawing_is_not():
-    def files(design):
-        return list_deviations(Dataset("a", {}, (), design=design))
+    def files(*designs):
+        return list_deviations(Dataset("a", {}, (), designs=designs))
 
     assert "results/a/design/deviations.bcf" in files("x.IFC")
     assert "results/a/design/as_built.ifc" in files("x.ifc")
     assert not [file for file in files("x.dxf") if file.endswith((".ifc", ".bcf"))]
     with pytest.raises(StageError, match=r"a has none.*plan\.design\.file"):
-        files(None)
+        files()
 
 
 def test_our_table_is_that_of_the_standard():

@@ -1,5 +1,7 @@
 """Designs read of IFC and DXF files made here: one room of 4 m x 3 m, or two."""
 
+from dataclasses import replace
+
 import ezdxf
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import shapely
 from helpers import ifc_making
 from scanplan.design import design_reading, ifc_design, ifc_file
 from scanplan.design.design_plan import make_plan
+from scanplan.design.layer_words import kind_of_layer
 from scanplan.errors import StageError
 
 OUTER = [(0, 0), (7.2, 0), (7.2, 3.4), (0, 3.4)]
@@ -41,6 +44,16 @@ def test_storeys_stand_on_their_floors():
     assert upper.floor_m == pytest.approx(ifc_making.HEIGHT_M + 0.2)
     assert upper.walls[0].solid.low_m == pytest.approx(ground.walls[0].solid.low_m, abs=1e-6)
     assert len(ground.walls) == len(upper.walls) == 4
+
+
+def test_an_opening_over_no_ground_is_left_out():
+    model = ifc_file.parse_ifc(ifc_making.model(), "made.ifc")
+    flat = [
+        replace(part, triangles_m=part.triangles_m * [1, 0, 1]) if part.fills == "window" else part
+        for part in model.parts
+    ]
+    (storey,) = ifc_design.list_storeys(replace(model, parts=tuple(flat)))
+    assert [opening.kind for opening in storey.openings] == ["door"]
 
 
 @pytest.fixture
@@ -105,6 +118,58 @@ def test_a_drawing_without_unit_or_walls_is_refused_with_the_remedy(drawn):
         design_reading.read_design(drawn(0))
     with pytest.raises(StageError, match=r"shows no wall.*name its layers"):
         design_reading.read_design(drawn(walls="0"))
+
+
+def test_a_drawing_in_no_known_unit_is_refused(drawn):
+    path = drawn()
+    document = ezdxf.filemanagement.readfile(path)
+    document.header["$INSUNITS"] = 99
+    document.saveas(path)
+    with pytest.raises(StageError, match=r"design\.dxf: states no unit.*99") as fault:
+        design_reading.read_design(path)
+    assert "\n" not in str(fault.value)
+
+
+@pytest.mark.parametrize("n_blocks", [1, 2, 40])
+def test_blocks_that_insert_one_another_are_refused_in_one_line(drawn, n_blocks):
+    path = drawn()
+    document = ezdxf.filemanagement.readfile(path)
+    blocks = [document.blocks.new(f"B{n}") for n in range(n_blocks)]
+    for block, inner in zip(blocks, [*blocks[1:], blocks[0]], strict=True):
+        for x in range(3):
+            block.add_blockref(inner.name, (x, 0), dxfattribs={"layer": "A-WALL"})
+    document.modelspace().add_blockref("B0", (0, 0), dxfattribs={"layer": "A-WALL"})
+    document.saveas(path)
+    with pytest.raises(StageError, match=r"design\.dxf: .*B0.*export it again") as fault:
+        design_reading.read_design(path)
+    assert "\n" not in str(fault.value)
+
+
+def test_what_lies_in_a_block_is_read(drawn):
+    path = drawn(door=False)
+    document = ezdxf.filemanagement.readfile(path)
+    leaf = document.blocks.new("LEAF")
+    leaf.add_line((0, 0), (0, 900), dxfattribs={"layer": "A-DOOR"})
+    document.blocks.new("DOOR").add_blockref("LEAF", (0, 0), dxfattribs={"layer": "A-DOOR"})
+    document.modelspace().add_blockref("DOOR", (4250, 1000), dxfattribs={"layer": "A-DOOR"})
+    document.saveas(path)
+    (storey,) = design_reading.read_design(path)
+    assert [opening.kind for opening in storey.openings] == ["door"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "layers"),
+    [
+        ("wall", ("A-WALL-EXTR", "InnenWand", "Trennwände", "Außenwaende", "Murs_2", "WallsExt")),
+        ("door", ("A-DOOR", "DOORS", "Haustür", "A-344---E-TUER", "Innentüren", "TUR", "portes")),
+        ("window", ("A-GLAZ", "Windows", "E-FENSTER", "Dachfenster", "Fenêtres", "GLAZING")),
+        ("column", ("S-COLS", "Column", "Stützen", "E-STUETZE", "poteau")),
+        ("room", ("A-AREA", "Rooms", "A-RAUM", "Wohnzimmer", "pièces", "Spaces")),
+        (None, ("Furniture", "Structure", "Fixtures", "A-AREA-IDEN", "Natur", "Outdoor", "0")),
+    ],
+)
+def test_layers_are_told_by_whole_words(kind, layers):
+    assert {layer: kind_of_layer(layer) for layer in layers} == dict.fromkeys(layers, kind)
 
 
 def test_a_damaged_drawing_is_refused_in_one_line(tmp_path):

@@ -98,7 +98,7 @@ def test_the_height_of_a_planar_survey_is_assumed(z_m):
 def test_rooms_are_at_least_as_high_as_walls_were_seen():
     low = floorplan_making.walls() | {"z_max_m": np.full(6, 1.4)}
     # lower than what the storey is assumed to be
-    assert plan(walls=low, floor_z_m=0.0).height_words == "at least 1.40 m"
-    assert plan(floor_z_m=-0.1, ceiling_z_m=2.6).height_words == "2.70 m"
+    assert plan(walls=low, floor_z_m=0.0).least_height_m == pytest.approx(1.4)
+    assert plan(floor_z_m=-0.1, ceiling_z_m=2.6).least_height_m == pytest.approx(2.7)
     planar = low | {"z_min_m": np.full(6, np.nan), "z_max_m": np.full(6, np.nan)}
-    assert plan(walls=planar).height_words == "not seen"
+    assert np.isnan(plan(walls=planar).least_height_m)

@@ -5,6 +5,7 @@ import pytest
 
 from helpers import ifc_making
 from scanplan.design import ifc_file
+from scanplan.design.storey_choice import find_storey
 from scanplan.errors import StageError
 
 DATA = ifc_making.model()
@@ -30,15 +31,13 @@ def test_storeys_are_chosen_by_name_or_index():
     model = ifc_file.parse_ifc(ifc_making.model(("Ground", "Upper")), "made.ifc")
     assert [name for name, _ in model.storeys] == ["Ground", "Upper"]
     assert model.storeys[1][1] == pytest.approx(2.7)
-    assert [ifc_file.find_storey(model, chosen, "made.ifc") for chosen in ("Upper", 0, 1)] == [
-        1,
-        0,
-        1,
-    ]
+    key = "plan.design.storey"
+    found = [find_storey(model.storeys, of, "made.ifc", key) for of in ("Upper", 0, 1)]
+    assert found == [1, 0, 1]
     for chosen in (None, "Attic", 2, -1):
-        said = r"made\.ifc: .*simulate\.site\.storey .*0 'Ground' at 0\.00 m, 1 'Upper' at 2"
+        said = r"made\.ifc: .*plan\.design\.storey .*0 'Ground' at 0\.00 m, 1 'Upper' at 2"
         with pytest.raises(StageError, match=said):
-            ifc_file.find_storey(model, chosen, "made.ifc")
+            find_storey(model.storeys, chosen, "made.ifc", key)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from scanplan.exports.drafting.presentation import compose_overview, compose_pre
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import compose_sheet, paper_words
 from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
+from scanplan.exports.sheet.styles import LAYERS
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.project.words_file import read_layers, read_words
 
@@ -77,6 +78,9 @@ def test_lengths_and_areas_are_in_the_unit_that_is_asked_for(unit, expected):
         (0.3047, "1'-0\""),
         (1.0, "3'-3 1/4\""),
         (2.4, "7'-10 1/2\""),
+        (-0.02, "-0'-0 3/4\""),
+        (-1.0, "-3'-3 1/4\""),
+        (-0.001, "0'-0\""),
     ],
 )
 def test_feet_and_inches_are_rounded_to_a_quarter_of_an_inch(length_m, said):
@@ -119,6 +123,7 @@ def test_layers_have_the_names_that_are_asked_for_and_nothing_is_lost():
     sheet = sheets(ENGLISH)[0]
     ours, others = read_dxf(sheet), read_dxf(sheet, layers=read_layers("din"))
     names = read_layers("din")
+    assert set(names) == set(LAYERS)
     assert not {layer.dxf.name for layer in others.layers} & set(names)
 
     def count(document):
@@ -152,6 +157,8 @@ def test_a_file_of_ones_own_is_read(tmp_path):
         ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors": "porte"}', "{n} doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": "{porte"}', "doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": ""}', "doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"{n}": "{n}"}', "{n}"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"{}": "({})"}', "{}"),
     ],
 )
 def test_a_mistake_in_words_is_named(tmp_path, text, named):
@@ -163,7 +170,12 @@ def test_a_mistake_in_words_is_named(tmp_path, text, named):
 
 
 @pytest.mark.parametrize(
-    "text", ["A-WALL: 'a/b'", "A-WALL: ''", "A-WALL: 3", "A-WALL: W\nA-DOOR: w", "A-WALL: [W]"]
+    "text",
+    [
+        *("A-WALL: 'a/b'", "A-WALL: ''", "A-WALL: 3", "A-WALL: W\nA-DOOR: w", "A-WALL: [W]"),
+        *("A-WALL: A-DOOR", "A-WALL: A-DOOR\nA-DOOR: A-WALL", "A-WALL: a-chng-same"),
+        *("A-WALL: '0'", "A-WALL: DEFPOINTS"),
+    ],
 )
 def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):
     file = tmp_path / "layers.yaml"

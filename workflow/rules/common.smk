@@ -54,6 +54,7 @@ from scanplan.project.dataset import (
     survey_files,
 )
 from scanplan.project.dataset_files import RESERVED
+from scanplan.project.design_file import choose_design
 from scanplan.project.name_pattern import match_names
 from scanplan.project.provenance import (
     begin_results,

@@ -126,7 +126,7 @@ def with_model(dataset):
 
 def design_of(wildcards):
     """The design that the job's dataset is held against."""
-    return DATASETS[wildcards.dataset].design
+    return or_end(choose_design, wildcards.dataset, DATASETS[wildcards.dataset].designs)
 
 
 def deviations_of_datasets(wildcards):

@@ -8,6 +8,7 @@ from scanplan.changes.comparison import Comparison, Scans
 from scanplan.changes.frames import FrameTie
 from scanplan.design.design_plan import see_design
 from scanplan.design.drawn_storey import DrawnStorey
+from scanplan.design.storey_choice import find_storey
 from scanplan.errors import StageError
 from scanplan.plan.floorplan import FloorPlan, say_count
 
@@ -55,7 +56,10 @@ def compare_design(
     StageError
         If there is no such storey, or none of those that are tried fits.
     """
-    tried = _choose(storeys, chosen, source)
+    tried = storeys
+    if chosen is not None:
+        listed = [(storey.name, storey.floor_m) for storey in storeys]
+        tried = [storeys[find_storey(listed, chosen, source, "plan.design.storey")]]
     ties: list[tuple[DrawnStorey, FrameTie]] = []
     faults: list[str] = []
     for storey in tried:
@@ -84,18 +88,3 @@ def warn_of_alike(found: AsBuilt) -> str:
     others = ", ".join(found.alike)
     count = say_count(len(found.alike), "other storey")
     return f"{count} fits as well as {found.storey.name}: {others}; set plan.design.storey"
-
-
-def _choose(
-    storeys: Sequence[DrawnStorey], chosen: str | int | None, source: str
-) -> Sequence[DrawnStorey]:
-    names = [storey.name for storey in storeys]
-    if chosen is None and storeys:
-        return storeys
-    if isinstance(chosen, int) and 0 <= chosen < len(storeys):
-        return [storeys[chosen]]
-    if isinstance(chosen, str) and names.count(chosen) == 1:
-        return [storeys[names.index(chosen)]]
-    listed = ", ".join(f"{i} {name!r}" for i, name in enumerate(names)) or "none with walls"
-    fault = f"plan.design.storey {chosen!r} is none or several of its storeys"
-    raise StageError(f"{source}: {fault}; give a name or number of: {listed}")

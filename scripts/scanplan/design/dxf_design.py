@@ -5,7 +5,6 @@ lies an opening, whose kind is that of the layer of what is drawn in it. Heights
 """
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.insert import Insert
 from ezdxf.entities.polygon import DXFPolygon
 from ezdxf.enums import InsertUnits
 from ezdxf.filemanagement import readfile
@@ -29,31 +29,26 @@ from scanplan.design.drawn_storey import (
     DrawnWall,
     Solid,
 )
+from scanplan.design.layer_words import KINDS, kind_of_layer
 from scanplan.errors import StageError
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
-from scanplan.types import Array, FilePath, FloatArray
+from scanplan.types import Array, FilePath, FloatArray, IntArray
 
-_LAYERS = {
-    "wall": r"wall|wand|w[aä]nd|mauer|mur(?!al)",
-    "door": r"door|t[uü]e?r|porte",
-    "window": r"wind|glaz|fenster|fen[eê]tre",
-    "column": r"col(umn|s)|st[uü]e?tz|poteau",
-    "room": r"room|space|raum|zimmer|area(?!-)|pi[eè]ce",
-}
-"""Words in names of layers, by the AIA's guidelines and as German and French offices name them."""
 _HEIGHTS_M = {"door": (0.0, 2.0), "passage": (0.0, 2.0), "window": (0.9, 2.0)}
 """ASSUME sills and lintels, which a plan does not show."""
 _HEIGHT_M = 2.5  # ASSUME of the storey, likewise
 _THICKNESS_M = (0.03, 0.8)  # of walls: from a partition of glass to a fortress's, almost
 _OPENING_M = (0.4, 6.0)  # of a gap between two walls in one line
 _PASSAGE_M = 1.6  # a wider gap in which nothing is drawn parts two walls
-_COSINE = math.cos(math.radians(1.0))  # of two sides of one wall
+_APART_DEG = 1.0  # two sides of one wall
+_COSINE, _SINE = math.cos(math.radians(_APART_DEG)), math.sin(math.radians(_APART_DEG))
 _IN_LINE_M = 0.02  # of walls on one line
 _COVERED = 0.95  # of the ground between two sides that is matter
 _SAGITTA_M = 0.005  # of chords for arcs
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
 _SKIN_M = 1e-3  # what lines that meet are drawn apart
+_DEEPEST = 32  # blocks within one another: a door in a flat in a house is three
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,18 +74,18 @@ def read_storeys(path: FilePath) -> list[DrawnStorey]:
     """
     try:
         document = readfile(path)
-    except (OSError, DXFError, ValueError) as error:
+        if document.units not in [*InsertUnits][1:]:
+            fault = f"states no unit ($INSUNITS is {document.units})"
+            raise StageError(f"{path}: {fault}; export it in metres")
+        scale_m = conversion_factor(InsertUnits(document.units), InsertUnits.Meters)
+        drawn = {kind: [] for kind in KINDS}
+        for entity in document.modelspace():
+            kind = kind_of_layer(entity.dxf.layer)
+            if kind is not None:
+                drawn[kind] += _trace(entity, scale_m)
+    except (OSError, DXFError, ValueError, ArithmeticError) as error:
         fault = f"cannot be read as DXF ({str(error).strip()[:120]})"
         raise StageError(f"{path}: {fault}; export it again") from None
-    unit = InsertUnits(document.units)
-    if unit == InsertUnits.Unitless:
-        raise StageError(f"{path}: states no unit ($INSUNITS is 0); export it in metres")
-    scale_m = conversion_factor(unit, InsertUnits.Meters)
-    drawn = {kind: [] for kind in _LAYERS}
-    for entity in document.modelspace():
-        kind = _kind_of(entity.dxf.layer)
-        if kind is not None:
-            drawn[kind] += _trace(entity, scale_m)
     storey = draw_storey({kind: np.array(lines, object) for kind, lines in drawn.items()})
     if not storey.walls:
         fault = "shows no wall on a layer named after walls, drawn by both sides"
@@ -123,16 +118,19 @@ def draw_storey(lines: dict[str, Array]) -> DrawnStorey:
     return DrawnStorey("model space", 0.0, _HEIGHT_M, drawn, openings, spaces, columns, others)
 
 
-def _kind_of(layer: str) -> str | None:
-    words = layer.casefold()
-    return next((kind for kind, named in _LAYERS.items() if re.search(named, words)), None)
+def _trace(
+    entity: DXFEntity, scale_m: float, within: tuple[str, ...] = ()
+) -> Iterator[BaseGeometry]:
+    """Yield the lines of an entity, those of a block and a hatch with it.
 
-
-def _trace(entity: DXFEntity, scale_m: float) -> Iterator[BaseGeometry]:
-    """Yield the lines of an entity, those of a block and a hatch with it."""
-    if entity.dxftype() == "INSERT":
-        for part in entity.virtual_entities():  # pyright: ignore[reportAttributeAccessIssue]
-            yield from _trace(part, scale_m)
+    `within` are the names of the blocks that it lies in.
+    """
+    if isinstance(entity, Insert):
+        name = entity.dxf.name
+        if name in within or len(within) == _DEEPEST:
+            raise ValueError(f"blocks insert themselves, or too deeply: {' > '.join(within)}")
+        for part in entity.virtual_entities():
+            yield from _trace(part, scale_m, (*within, name))
         return
     if entity.dxftype() not in ("LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "HATCH"):
         return
@@ -160,17 +158,24 @@ def _find_strips(built: BaseGeometry) -> Iterator[_Strip]:
         for ring in shapely.get_rings(part)
         for side in pairwise(shapely.get_coordinates(overlays.simplify_shapes(ring, _GRID_M)))
     ]
-    for row, side in enumerate(sides):
-        for other in sides[row + 1 :]:
-            strip = _between(side, other)
-            if strip is None:
-                continue
-            half_m = strip.thickness_m / 2
-            ground = overlays.buffer_shapes(
-                shapely.LineString(strip.line_m), half_m, cap_style="flat"
-            )
-            if overlays.intersect_areas(ground, built).area >= _COVERED * ground.area:
-                yield strip
+    for row, other in _list_near(sides):
+        strip = _between(sides[row], sides[other])
+        if strip is None:
+            continue
+        ground = overlays.buffer_shapes(
+            shapely.LineString(strip.line_m), strip.thickness_m / 2, cap_style="flat"
+        )
+        if overlays.intersect_areas(ground, built).area >= _COVERED * ground.area:
+            yield strip
+
+
+def _list_near(sides: Sequence[FloatArray]) -> IntArray:
+    """Return the pairs (n, 2) of sides that may be of one wall, each once."""
+    lines = np.array([shapely.LineString(side) for side in sides], object)
+    # sides that are not quite parallel are farther apart at one end
+    reach_m = _THICKNESS_M[1] + shapely.length(lines) * _SINE
+    pairs = shapely.STRtree(lines).query(lines, "dwithin", reach_m).T
+    return np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
 
 
 def _between(side: FloatArray, other: FloatArray) -> _Strip | None:
@@ -218,17 +223,21 @@ def _find_next(
     wall: _Strip, others: Sequence[_Strip], built: BaseGeometry, lines: dict[str, Array]
 ) -> tuple[int, list[_Gap]] | None:
     """Return which other strip goes on with a wall, and the openings between both."""
+    if not others:
+        return None
     normal = left_normals(wall.line_m[None])[0]
-    for row, other in enumerate(others):
-        off_m = np.abs((other.line_m - wall.line_m[0]) @ normal).max()
-        if off_m > _IN_LINE_M or abs(other.thickness_m - wall.thickness_m) > _IN_LINE_M:
-            continue
-        places_m = np.sort((other.line_m - wall.line_m[0]) @ wall.along)
+    lines_m = np.array([other.line_m for other in others])
+    off_m = np.abs((lines_m - wall.line_m[0]) @ normal).max(axis=1)
+    thicker_m = np.abs(np.array([other.thickness_m for other in others]) - wall.thickness_m)
+    for row in np.flatnonzero((off_m <= _IN_LINE_M) & (thicker_m <= _IN_LINE_M)).tolist():
+        places_m = np.sort((lines_m[row] - wall.line_m[0]) @ wall.along)
         length_m = float((wall.line_m[1] - wall.line_m[0]) @ wall.along)
         low_m, high_m = (length_m, places_m[0]) if places_m[0] > 0 else (places_m[1], 0.0)
+        if high_m - low_m > _OPENING_M[1]:
+            continue
         line_m = wall.line_m[0] + np.array([[low_m], [high_m]]) * wall.along
         between = _list_gaps(line_m, wall.thickness_m, built, lines)
-        if high_m - low_m <= _OPENING_M[1] and between is not None:
+        if between is not None:
             return row, between
     return None
 

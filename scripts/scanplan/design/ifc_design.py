@@ -60,7 +60,7 @@ def _draw_storey(model: IfcBuilding, row: int) -> DrawnStorey:
     openings = [
         _draw_opening(part, within[part.guid], walls, rows)
         for part in parts
-        if part.kind == "opening" and part.host in rows
+        if part.kind == "opening" and part.host in rows and not within[part.guid].ground.is_empty
     ]
     spaces = [space for p in parts if p.kind == "space" for space in _draw_space(p, within[p.guid])]
     return DrawnStorey(

@@ -134,37 +134,6 @@ def parse_ifc(data: bytes, source: FilePath) -> IfcBuilding:
     return IfcBuilding(storeys, tuple(parts), (note,) if failed else ())
 
 
-def find_storey(
-    model: IfcBuilding,
-    chosen: str | int | None,
-    source: FilePath,
-    key: str = "simulate.site.storey",
-) -> int:
-    """Return the index of a storey by its name or its index from below.
-
-    None stands for the only one. `key` is the setting that chooses it.
-
-    Raises
-    ------
-    StageError
-        Listing the storeys, if none or several are meant.
-    """
-    names = [name for name, _ in model.storeys]
-    if chosen is None and len(names) == 1:
-        return 0
-    if isinstance(chosen, int) and 0 <= chosen < len(names):
-        return chosen
-    if isinstance(chosen, str) and names.count(chosen) == 1:
-        return names.index(chosen)
-    fault = f"storey {chosen!r} is none or several of its storeys"
-    if chosen is None:
-        fault = "no storey is chosen"
-    listed = ", ".join(
-        f"{i} {name!r} at {z_m:.2f} m" for i, (name, z_m) in enumerate(model.storeys)
-    )
-    raise StageError(f"{source}: {fault}; set simulate.site.storey to a name or index of: {listed}")
-
-
 # ifcopenshell makes its classes while it runs: what it returns has no type that could be stated
 
 

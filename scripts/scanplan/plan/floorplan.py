@@ -321,14 +321,6 @@ class FloorPlan:
         return "walls" if highest_m > self.assumed_height_m else "assumed"
 
     @cached_property
-    def height_words(self) -> str:
-        """How high the storey is, in words: to its ceiling, or at least as walls were seen."""
-        if self.height_from == "ceiling":
-            return f"{self.storey_m[1]:.2f} m"
-        is_known = np.isfinite(self.least_height_m)
-        return f"at least {self.least_height_m:.2f} m" if is_known else "not seen"
-
-    @cached_property
     def least_height_m(self) -> float:
         """How high above the floor its ceiling or else its walls were seen; NaN of planar scans."""
         _, highest_m = self._walls_z_m

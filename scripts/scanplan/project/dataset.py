@@ -92,8 +92,8 @@ class Dataset:
         What the user should know of it before it is run.
     corrections : str or None
         The file of what a person says of its plan, where there is one.
-    design : str or None
-        The file of the design that it is held against, where there is one.
+    designs : tuple of str
+        Files of which one is the design that it is held against, see `design_file.choose_design`.
     """
 
     name: str
@@ -105,7 +105,7 @@ class Dataset:
     source: str = ""
     notes: tuple[str, ...] = ()
     corrections: str | None = None
-    design: str | None = None
+    designs: tuple[str, ...] = ()
 
 
 def name_datasets(given: FilePath | list[FilePath] | None) -> dict[str, str | None]:
@@ -213,8 +213,8 @@ def describe_dataset(
         found = Dataset(name, settings, recordings, truth, notes=notes, corrections=corrections)
     named = settings["plan"]["design"]
     tolerance_file.read_tolerances(named["tolerances"])
-    design = design_file.find_design(named["file"], path)
-    return replace(found, layers=layers, source=source, design=design)
+    designs = design_file.find_designs(named["file"], path)
+    return replace(found, layers=layers, source=source, designs=designs)
 
 
 def _read_own_settings(path: FilePath | None) -> list[Layer]:
@@ -344,13 +344,11 @@ def list_deviations(found: Dataset) -> list[str]:
     Raises
     ------
     StageError
-        If it has none.
+        If it has none, or several.
     """
-    if found.design is None:
-        remedy = "put an .ifc or .dxf file into its folder, or name one by plan.design.file"
-        raise StageError(f"design: {found.name} has none to be held against; {remedy}")
+    design = design_file.choose_design(found.name, found.designs)
     files = [f"deviations.{suffix}" for suffix in DESIGN]
-    files += OF_MODEL if found.design.lower().endswith(".ifc") else ()
+    files += OF_MODEL if design.lower().endswith(".ifc") else ()
     return [f"results/{found.name}/design/{file}" for file in files]
 
 

@@ -12,6 +12,8 @@ from scanplan.errors import StageError
 from scanplan.project import user_file
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from scanplan.types import FilePath
 
 SUFFIXES = (".ifc", ".dxf")
@@ -19,20 +21,20 @@ SUFFIXES = (".ifc", ".dxf")
 _REMEDY = "name the design by plan.design.file"
 
 
-def find_design(named: str | None, folder: FilePath | None) -> str | None:
-    """Return the file of a dataset's design; None where there is none.
+def find_designs(named: str | None, folder: FilePath | None) -> tuple[str, ...]:
+    """Return the files that may be a dataset's design: the one that is named, or all beside it.
 
     Parameters
     ----------
     named : str or None
         What plan.design.file says.
     folder : path-like or None
-        The dataset's, of which the only file with such a suffix is it.
+        The dataset's, in which files with such a suffix are designs.
 
     Raises
     ------
     StageError
-        If the file is missing or of no such kind, or there are several.
+        If the file that is named is missing or of no such kind.
     """
     if named is not None:
         if Path(named).suffix.lower() not in SUFFIXES:
@@ -40,11 +42,25 @@ def find_design(named: str | None, folder: FilePath | None) -> str | None:
             raise StageError(f"plan.design.file: {named} is no {kinds} file; {_REMEDY}")
         if user_file.find_file(named, _REMEDY) is None:
             raise StageError(f"plan.design.file: {named} does not exist; {_REMEDY}")
-        return named
+        return (named,)
     if folder is None or not Path(folder).is_dir():
-        return None
-    found = sorted(str(f) for f in Path(folder).iterdir() if f.suffix.lower() in SUFFIXES)
-    if len(found) > 1:
-        names = ", ".join(Path(file).name for file in found)
-        raise StageError(f"{folder}: has several designs, {names}; {_REMEDY}")
-    return found[0] if found else None
+        return ()
+    beside = Path(folder).iterdir()
+    return tuple(sorted(str(file) for file in beside if file.suffix.lower() in SUFFIXES))
+
+
+def choose_design(name: str, designs: Sequence[str]) -> str:
+    """Return the one design that a dataset of that name is held against.
+
+    Raises
+    ------
+    StageError
+        If there is none, or several.
+    """
+    if not designs:
+        remedy = "put an .ifc or .dxf file into its folder, or name one by plan.design.file"
+        raise StageError(f"design: {name} has none to be held against; {remedy}")
+    if len(designs) > 1:
+        names = ", ".join(Path(file).name for file in designs)
+        raise StageError(f"design: {name} has several, {names}; {_REMEDY}")
+    return designs[0]

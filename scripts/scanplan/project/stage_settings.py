@@ -171,8 +171,10 @@ def select_presentation(settings: Settings) -> Keywords:
 
 
 def select_design(settings: Settings) -> Keywords:
-    """Return the settings of `compare_design`: those of drawings, and the design's storey."""
-    return select_drawing(settings) | {"design_storey": settings["plan"]["design"]["storey"]}
+    """Return the settings of `compare_design`: three of drawings, and the design's storey."""
+    export = select_section(settings, "plan", "export")
+    own = {key: export[key] for key in (*_ASSUMED, "project")}
+    return own | {"design_storey": settings["plan"]["design"]["storey"]}
 
 
 def select_files(settings: Settings) -> Keywords:

@@ -24,6 +24,8 @@ _FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`]')
 """What names of layers must not have in DXF."""
 _LONGEST = 255
 """Letters of such a name."""
+_OF_DXF = ("0", "Defpoints")
+"""Layers that every drawing has, which are not renamed."""
 
 
 def read_words(language: str) -> dict[str, Any]:
@@ -59,6 +61,9 @@ def read_words(language: str) -> dict[str, Any]:
         place = f"{file}: phrase {phrase!r}"
         if not isinstance(phrase, str) or not isinstance(words, str) or not words.strip():
             raise StageError(f"{place} has no words; write both as text, in quotation marks")
+        # what is a place alone stands for itself, and would be said for ever
+        if not any(map(str.isalpha, re.sub(_PLACE, "", phrase))):
+            raise StageError(f"{place} has no letters; leave it out")
         asked, given = len(_PLACE.findall(phrase)), len(_PLACE.findall(words))
         if asked != given or set(re.sub(_PLACE, "", words)) & set("{}"):
             raise StageError(f"{place} has {asked} places, its words have {given}; keep each {{}}")
@@ -82,12 +87,16 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
         return {}
     file = _find_file(str(layers), "layers")
     values = read_yaml(file)
+    taken = {name.casefold() for name in (*read_yaml(_find_file("din", "layers")), *_OF_DXF)}
     for name, other in values.items():
         place = f"{file}: layer {name!r}"
         if not isinstance(other, str) or not other.strip() or len(other) > _LONGEST:
             raise StageError(f"{place} has no name of 1 to {_LONGEST} letters; write one")
         if _FORBIDDEN.search(other):
             raise StageError(f"{place}: {other!r} has signs that DXF forbids; use letters, - and _")
+        if other.casefold() in taken:
+            fault = f"{other!r} is a layer already"
+            raise StageError(f"{place}: {fault}; give another name, or leave it out to keep ours")
     names = [str(other).casefold() for other in values.values()]
     if len(set(names)) < len(names):
         raise StageError(f"{file}: two layers have one name; give each its own")

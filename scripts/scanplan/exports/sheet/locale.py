@@ -138,11 +138,12 @@ ENGLISH = Locale()
 
 
 def _format_feet(length_m: float) -> str:
-    parts = round(length_m / _INCH_M * _INCH_PARTS)
+    parts = round(abs(length_m) / _INCH_M * _INCH_PARTS)
+    sign = "-" if length_m < 0 and parts else ""
     feet, left = divmod(parts, 12 * _INCH_PARTS)
     inches, fraction = divmod(left, _INCH_PARTS)
     over = {1: " 1/4", 2: " 1/2", 3: " 3/4"}.get(fraction, "")
-    return f"{feet}'-{inches}{over}\""
+    return f"{sign}{feet}'-{inches}{over}\""
 
 
 def make_locale(unit: str, words: Mapping[str, Any] | None) -> Locale:

@@ -65,7 +65,7 @@ def _name_room(page: Page, plan: FloorPlan, row: int) -> str:
 
 
 def _state_height(page: Page, plan: FloorPlan) -> str:
-    """Return how high the storey is, as `plan.height_words` in the sheet's unit."""
+    """Return how high the storey is: to its ceiling, or at least as walls were seen."""
     if not np.isfinite(plan.least_height_m):
         return "not seen"
     bound = "" if plan.height_from == "ceiling" else "at least "

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.design.storey_choice import find_storey
 from scanplan.errors import StageError
 from scanplan.lab.buildings import drawing_file, drawn_floor, extrusion, ground, storeys, truth
 from scanplan.lab.buildings.tolerances import DECIMALS
@@ -178,7 +179,7 @@ def _load_model(
     from scanplan.design import ifc_file
 
     model = ifc_file.parse_ifc(data, source)
-    index = ifc_file.find_storey(model, chosen, source)
+    index = find_storey(model.storeys, chosen, source, "simulate.site.storey")
     return building_of_model(model, index, slice_height_m, source, **reading)
 
 
