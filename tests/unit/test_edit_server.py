@@ -14,6 +14,7 @@ from scanplan.errors import StageError
 from scanplan.project.corrections_file import read_corrections
 from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
+from scanplan.report import result_links
 
 SURVEY = "floor 0123"
 WALL = {"element": "wall", "at": [1.0, 2.0], "action": "remove"}
@@ -105,6 +106,12 @@ def wait(server):
 def test_the_page_and_the_files_that_it_links_are_shown(server, folder):
     assert ask(server, "report.html") == (200, (folder / "report.html").read_bytes())
     assert ask(server, "plan/plan.pdf") == (200, b"%PDF")
+
+
+def test_every_file_that_a_report_may_link_is_shown(server, folder):
+    for name in result_links._WORDS:
+        (folder / name).write_bytes(b"{}")
+    assert [name for name in result_links._WORDS if ask(server, name)[0] != 200] == []
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ _HEADERS = {
 """What no other page may do with an answer: keep, embed, guess or frame it, learn its address."""
 _SHOWN = (
     *(".html", ".pdf", ".svg", ".png", ".dxf", ".geojson", ".ifc", ".glb", ".gpkg", ".csv"),
-    *(".json", ".pgm", ".yaml", ".tum", ".txt"),
+    *(".json", ".pgm", ".yaml", ".tum", ".txt", ".bcf", ".laz"),
 )
 """Files that the page links, by suffix; tables and recordings are none of them."""
 
