@@ -225,6 +225,7 @@ def test_corrections_of_another_survey_are_refused(server):
         ({"survey": SURVEY, "revision": "", "entries": 5}, 400),
         ({"survey": SURVEY, "revision": "", "entries": [5]}, 400),
         ({"survey": SURVEY, "revision": "", "entries": [WALL | {"at": [1e999, 0]}]}, 400),
+        ({"survey": SURVEY, "revision": "", "entries": [{**ROOM, "name": "\ud83c"}]}, 400),
         ({"survey": {"a": 1}, "revision": "", "entries": []}, 400),
         (b" " * (2**18 + 1), 413),
     ],
@@ -322,6 +323,39 @@ def test_corrections_as_geojson_are_left_alone(server, folder):
     status, said = save(server, WALL)
     assert status == 400 and "corrections.geojson: is not written here" in said["error"]
     assert other.read_text() == "{}" and not other.with_suffix(".yaml").exists()
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "told"),
+    [
+        ("results/floor/report.html", None, "report.html: cannot be read"),
+        ("results/floor/report.html", b'id="data">{</script>', "report.html: is damaged"),
+        (
+            "rec/corrections.yaml",
+            b"corrections:\n- {element: room, at: [3, 2], name: Hall, when: 2026-03-01}\n",
+            "corrections.yaml: entry 1: when is datetime.date(2026, 3, 1)",
+        ),
+        ("rec/corrections.yaml", b"\xff", "corrections.yaml: is no text in UTF-8"),
+    ],
+)
+def test_a_file_that_a_page_cannot_be_told_of_is_told_in_one_line(
+    server, folder, capfd, file, content, told
+):
+    path = folder.parents[1] / file
+    if content is None:
+        path.unlink()
+    else:
+        path.write_bytes(content)
+    for status, said in (ask(server, "api/state"), save(server, WALL)):
+        assert status == 400 and told in said["error"] and "\n" not in said["error"]
+    assert capfd.readouterr().err == ""
+
+
+def test_what_nobody_has_thought_of_is_answered_all_the_same(server, monkeypatch, capfd):
+    monkeypatch.setattr(server.session, "state", lambda: {"entries": [object()]})
+    status, said = ask(server, "api/state")
+    assert status == 500 and said["error"].startswith("TypeError: ")
+    assert capfd.readouterr().err == ""
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")

@@ -74,7 +74,8 @@ class EditSession:
         Raises
         ------
         StageError
-            If the file of corrections is damaged, or a corrections.geojson.
+            If the file of corrections has a mistake, or is a corrections.geojson, or there is no
+            page.
         """
         entries, revision = self._read()
         page = self._read_page()
@@ -147,8 +148,15 @@ class EditSession:
         return self._listener.is_alive()
 
     def _read_page(self) -> dict[str, Any]:
-        found = _DATA.search((self.results / PAGE).read_bytes())
-        return json.loads(found[1]) if found else {}
+        page = self.results / PAGE
+        try:
+            found = _DATA.search(page.read_bytes())
+            return json.loads(found[1]) if found else {}
+        except OSError as error:
+            fault = f"cannot be read ({error.strerror})"
+        except ValueError:
+            fault = "is damaged"
+        raise StageError(f"{page}: {fault}; wait for a run that is at work, or run it again")
 
     def _read(self) -> tuple[list[dict[str, Any]], str]:
         """Return the entries of the file, and a digest of it."""
@@ -157,6 +165,8 @@ class EditSession:
             return [], ""
         if found != self.place:
             raise StageError(f"{found}: is not written here; move it away, or edit it by hand")
+        # what a page cannot be told is a mistake, too: a date without quotes, a number that is none
+        corrections_file.read_corrections(found)
         entries = corrections_file.read_entries(found)
         return entries, hashlib.sha256(found.read_bytes()).hexdigest()
 
@@ -164,8 +174,13 @@ class EditSession:
         lines = [f"- {json.dumps(entry, ensure_ascii=False)}\n" for entry in entries]
         head = f"survey: {json.dumps(survey, ensure_ascii=False)}\ncorrections:"
         text = f"{head}\n{''.join(lines)}" if lines else f"{head} []\n"
+        try:
+            content = text.encode()
+        except UnicodeEncodeError as error:
+            fault = f"has {text[error.start]!r}, half of a character; write both or none"
+            raise StageError(f"what is said {fault}") from None
         with atomic.replace_file(self.place) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+            temporary.write_bytes(content)
             try:
                 corrections_file.read_corrections(temporary)
             except StageError as error:
