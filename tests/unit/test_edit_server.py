@@ -5,6 +5,7 @@ import http.client
 import json
 import os
 import sys
+import tempfile
 import threading
 import time
 
@@ -369,11 +370,51 @@ def test_a_folder_that_cannot_be_written_to_is_told(server, folder):
     assert status == 400 and "cannot be written" in said["error"]
 
 
-def test_a_lone_recording_has_its_corrections_beside_it(folder):
+def test_a_lone_recording_has_its_corrections_and_their_log_beside_it(folder):
     (folder / "source.txt").write_text("rec/my.bag\n")
-    (folder.parents[1] / "rec/my.bag").touch()
-    session = EditSession(folder, [])
-    assert session.place == folder.parents[1] / "rec/my.bag.corrections.yaml"
+    recording = folder.parents[1] / "rec/my.bag"
+    recording.touch()
+    with serving(folder) as server:
+        assert server.session.place == recording.with_name("my.bag.corrections.yaml")
+        save(server, WALL)
+    # another recording in the folder has a log of its own
+    found = sorted(path.name for path in recording.parent.iterdir())
+    assert found == ["my.bag", "my.bag.corrections.log", "my.bag.corrections.yaml"]
+
+
+BY_HAND = """corrections:
+# the cupboard, says the caretaker
+- {element: wall, at: [1.0, 2.0], action: remove}
+"""
+
+
+def test_what_a_person_wrote_is_kept_once_before_it_is_written_anew(server, folder):
+    place = folder.parents[1] / "rec/corrections.yaml"
+    kept = place.with_name("corrections.yaml.by_hand")
+    place.write_text(BY_HAND)
+    for entries in ([WALL, ROOM], [WALL]):
+        assert save(server, *entries, revision=ask(server, "api/state")[1]["revision"])[0] == 200
+        wait(server)
+        assert kept.read_text() == BY_HAND and "caretaker" not in place.read_text()
+
+
+def test_what_a_page_wrote_is_kept_nowhere_else(server, folder):
+    for entries in ([WALL], [WALL, ROOM], []):
+        assert save(server, *entries, revision=ask(server, "api/state")[1]["revision"])[0] == 200
+        wait(server)
+    names = {path.name for path in (folder.parents[1] / "rec").iterdir()}
+    assert names == {"corrections.yaml", "corrections.log"}
+
+
+def test_a_run_that_cannot_begin_is_told_and_leaves_no_settings(folder, tmp_path, monkeypatch):
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
+    session = EditSession(folder, [str(tmp_path / "no_program")])
+    with pytest.raises(StageError, match="corrections are saved, but no run begins"):
+        session.save({"survey": SURVEY, "revision": "", "entries": [WALL]})
+    assert list(scratch.iterdir()) == [] and not session.state()["running"]
+    assert session.state()["entries"] == [WALL]
 
 
 def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):

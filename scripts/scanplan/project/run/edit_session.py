@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 import subprocess
 import tempfile
@@ -19,9 +20,11 @@ from scanplan.project.dataset_files import is_survey_file
 from scanplan.store import atomic
 
 PAGE = "report.html"
-_LOG = "corrections.log"
+_BY_HAND = ".by_hand"  # added to the name of a file that a person wrote, to keep it
 _DATA = re.compile(rb'id="data">(.*?)</script>', re.DOTALL)
 """What a page states of the plan that it shows, as JSON."""
+_OF_PAGE = re.compile(rb"(survey: [^#\n]*\n|corrections:( \[\])?\n|- \{[^#\n]*\}\n)*")
+"""A file of corrections in which nothing stands but entries, a line each: no comment is lost."""
 _STAGE = re.compile(r"^ *(\d+)/(\d+) (.*)$")
 """A line of a run on a stage that has ended: how many have, of how many."""
 _MOST_LETTERS = 200  # of a line of the run that a page shows
@@ -185,13 +188,24 @@ class EditSession:
                 corrections_file.read_corrections(temporary)
             except StageError as error:
                 raise StageError(str(error).replace(f"{temporary}: ", "")) from None
+            self._keep_written()
+
+    def _keep_written(self) -> None:
+        """Keep the file that a person wrote beside it, once, as comments are not written anew."""
+        kept = self.place.with_name(f"{self.place.name}{_BY_HAND}")
+        if not self.place.exists() or os.path.lexists(kept):
+            return
+        content = self.place.read_bytes()
+        if not _OF_PAGE.fullmatch(content):
+            atomic.write_bytes(kept, content)
 
     def _note(self, before: Sequence[Any], after: Sequence[Any]) -> None:
         """Add to the log what was said and taken back, and when."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         lines = [("said", entry) for entry in after if entry not in before]
         lines += [("taken back", entry) for entry in before if entry not in after]
-        place = self.place.with_name(_LOG)
+        # by the recording's name: another one in its folder has a log of its own
+        place = self.place.with_suffix(".log")
         with atomic.explain_unwritable(place), place.open("a", encoding="utf-8") as log:
             for what, entry in lines:
                 log.write(json.dumps({"saved": now, what: entry}, ensure_ascii=False) + "\n")
@@ -201,24 +215,32 @@ class EditSession:
         made = self._made
         datasets = made.storeys or [made.dataset] * (made.dataset is not None)
         asked = [f"dataset={json.dumps(datasets)}"] if datasets else []
-        with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
-            yaml.safe_dump(made.settings, file)
-        given = ["--configfile", file.name] if made.settings else []
+        settings = None
+        try:
+            with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
+                settings = Path(file.name)
+                yaml.safe_dump(made.settings, file)
+            given = ["--configfile", file.name] if made.settings else []
+            self._run = subprocess.Popen(
+                [*self._command, *given, *(["--config", *asked] if asked else [])],
+                cwd=self._root,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                errors="replace",
+            )
+        except OSError as error:
+            if settings is not None:
+                settings.unlink(missing_ok=True)
+            fault = f"the corrections are saved, but no run begins ({error.strerror})"
+            raise StageError(f"{fault}; run the dataset again") from None
         self._lines = []
-        self._run = subprocess.Popen(
-            [*self._command, *given, *(["--config", *asked] if asked else [])],
-            cwd=self._root,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-        )
-        self._listener = threading.Thread(target=self._listen, args=(self._run, file.name))
+        self._listener = threading.Thread(target=self._listen, args=(self._run, settings))
         self._listener.daemon = True
         self._listener.start()
 
-    def _listen(self, run: subprocess.Popen[str], settings: str) -> None:
+    def _listen(self, run: subprocess.Popen[str], settings: Path) -> None:
         with run:
             self._lines.extend(line.rstrip() for line in run.stdout or ())
-        Path(settings).unlink(missing_ok=True)
+        settings.unlink(missing_ok=True)
