@@ -143,9 +143,11 @@ class EditSession:
 
     def end(self) -> None:
         """End the run, if one is at work; what it has made stays."""
-        if self._is_running() and self._run is not None:
-            self._run.terminate()
-            self._listener.join()
+        # what is being saved has begun its run first
+        with self._guard:
+            if self._is_running() and self._run is not None:
+                self._run.terminate()
+                self._listener.join()
 
     def _is_running(self) -> bool:
         return self._listener.is_alive()
