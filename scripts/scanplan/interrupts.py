@@ -5,6 +5,7 @@ No imports of weight: `scripts/startup/sitecustomize.py` imports this before all
 
 import os
 import signal
+from types import FrameType
 
 INTERRUPTED = "was interrupted; the same command goes on from here"
 """Last words of a stage or a run that Ctrl-C or a signal to end has ended."""
@@ -16,6 +17,8 @@ WATCHED = "SCANPLAN_WATCHED"
 _IS_WATCHED = WATCHED in os.environ
 # set where the run is ending: of a stage that it was about to start it waits for the end
 _ENDING = "SCANPLAN_ENDING"
+# Windows has no terminals that say that they are closed
+_ENDS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 def end_on_interrupt() -> None:
@@ -34,6 +37,22 @@ def begin_work() -> None:
     """Have Ctrl-C raise KeyboardInterrupt again: from now on there is work to be ended first."""
     if signal.getsignal(signal.SIGINT) is end_in_one_line:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def interrupt_on_end() -> None:
+    """Have the first signal to end raise KeyboardInterrupt, as Ctrl-C does; ignored ones stay so.
+
+    Further ones do nothing: a terminal that is closed may send several.
+    """
+    for number in _ENDS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt_once)
+
+
+def _interrupt_once(number: int, frame: FrameType | None) -> None:
+    for further in _ENDS:
+        signal.signal(further, signal.SIG_IGN)
+    signal.default_int_handler(number, frame)
 
 
 def end_work() -> None:

@@ -387,7 +387,8 @@ def served(chromium, tmp_path):
     results.mkdir(parents=True)
     recording.mkdir()
     files = report_making.files(tmp_path)
-    first = report_making.written(tmp_path, files, name="office")
+    storeys = [("Ground floor", "office"), ("First floor", "upstairs")]
+    first = report_making.written(tmp_path, files, name="office", storeys=storeys)
     shutil.copy(first, results / "report.html")
     files["corrections"] = tmp_path / "corrections.yaml"
     wall = {"element": "wall", "at": [1.975, 3.1], "action": "remove"}
@@ -429,6 +430,13 @@ def test_what_is_saved_is_carried_out_and_the_page_shows_the_new_plan(served):
     (wall,) = corrections_file.read_corrections(recording / "corrections.yaml")
     assert (wall.action, wall.at_m) == ("remove", (1.975, 3.1))
     assert text_of(page, "#n-fresh") == "No changes yet" and text_of(page, "#told") == ""
+
+
+def test_a_page_links_other_storeys_where_they_can_be_reached_alone(served):
+    page, server, _ = served
+    assert not in_sight(page, "#storeys a")
+    page.open((server.session.results / "report.html").as_uri())
+    assert in_sight(page, "#storeys a") == 2
 
 
 def test_two_pages_lose_nothing(served):

@@ -1,9 +1,13 @@
 """The command of an installed release, and the command of Snakemake that it stands for."""
 
+import json
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
+import urllib.request
 import webbrowser
 
 import pytest
@@ -14,6 +18,7 @@ from scanplan.errors import StageError
 from scanplan.project.code_files import state_version
 from scanplan.project.run import command
 from scanplan.project.run.edit_server import EditServer
+from scanplan.store import atomic
 
 MAIN = "import sys; from scanplan.project.run.command import main; sys.exit(main())"
 
@@ -117,6 +122,38 @@ def test_a_run_takes_the_place_of_the_command_and_says_which_it_is(tmp_path, pro
     assert second == f"{os.getpid()} {tmp_path} {' '.join(expected)}"
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without a signal")
+@pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
+    results, scratch, modules = (tmp_path / p for p in ("results/floor", "scratch", "modules"))
+    for folder in (results, scratch, modules):
+        folder.mkdir(parents=True)
+    (results / "report.html").write_text('<script id="data">{"survey": "floor"}</script>')
+    (results / "source.txt").write_text("my.bag\n")
+    (tmp_path / "my.bag").touch()
+    # a run that says who it is and works on
+    stub = "import os, time; print(f' 1/9 {os.getpid()}', flush=True); time.sleep(60)"
+    (modules / "snakemake.py").write_text(stub)
+    places = [str(command.SNAKEFILE.parents[1] / "scripts"), str(modules)]
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(places), "TMPDIR": str(scratch)}
+    words = [sys.executable, "-c", MAIN, "open", str(results), "--no-browser"]
+    with subprocess.Popen(words, env=env, stdout=subprocess.PIPE, text=True) as opened:
+        page = re.search(r"http://\S+/", opened.stdout.readline())[0]
+        origin = page.rpartition("/")[0].rpartition("/")[0]
+        asked = json.dumps({"survey": "floor", "revision": "", "entries": []}).encode()
+        headers = {"Origin": origin, "Content-Type": "application/json"}
+        request = urllib.request.Request(f"{page}api/corrections", asked, headers)
+        urllib.request.urlopen(request, timeout=20).close()
+        told = {"ended": 0, "running": True}
+        while told["running"] and not told["ended"]:
+            time.sleep(0.02)
+            told = json.load(urllib.request.urlopen(f"{page}api/run", timeout=20))
+        assert len(list(scratch.iterdir())) == 1
+        opened.send_signal(getattr(signal, sent))
+        assert opened.wait(timeout=20) == 0
+    assert list(scratch.iterdir()) == [] and not atomic.is_process_alive(int(told["line"]))
+
+
 def test_a_report_is_opened_at_an_address_of_this_computer_alone(tmp_path, monkeypatch, capsys):
     results = tmp_path / "results/floor"
     results.mkdir(parents=True)
@@ -127,6 +164,7 @@ def test_a_report_is_opened_at_an_address_of_this_computer_alone(tmp_path, monke
     monkeypatch.setattr(webbrowser, "open", lambda page: seen.append(page))
     monkeypatch.setattr(EditServer, "serve_forever", lambda _: None)
     monkeypatch.setattr(interrupts, "begin_work", lambda: None)
+    monkeypatch.setattr(interrupts, "interrupt_on_end", lambda: None)
     monkeypatch.setattr(surroundings, "mend_surroundings", lambda: None)
     monkeypatch.setattr(interrupts, "end_on_interrupt", lambda: None)
     monkeypatch.setattr(os, "environ", dict(os.environ))

@@ -6,7 +6,10 @@ import shapely
 
 from helpers import floorplan_making
 from helpers.quarter_disc import RADIUS_M, quarter
-from scanplan.plan.corrections import added, rows
+from scanplan.plan.corrections import added, applying, rows
+from scanplan.project.corrections_file import Correction
+from scanplan.store import schemas
+from scanplan.store.tables import no_rows
 
 MIDDLE_M = RADIUS_M * np.sqrt([0.5, 0.5])
 
@@ -14,7 +17,11 @@ MIDDLE_M = RADIUS_M * np.sqrt([0.5, 0.5])
 def quarter_rows():
     drawn = quarter()
     tables = {name: getattr(drawn, name) for name in ("faces", "walls", "openings", "rooms")}
-    return rows.rows_of_plan(tables | {"evidence": floorplan_making.evidence()})
+    beside = {
+        "evidence": floorplan_making.evidence(),
+        "furniture": no_rows(schemas.FURNITURE),
+    }
+    return rows.rows_of_plan(tables | beside)
 
 
 def test_a_curved_wall_is_found_along_its_arc_not_its_chord():
@@ -42,3 +49,12 @@ def test_a_line_across_a_curved_wall_is_no_opening():
     outward = np.sqrt([0.5, 0.5])
     line_m = np.stack([MIDDLE_M - 0.5 * outward, MIDDLE_M + 0.5 * outward])
     assert "across wall 0" in added.explain_misfit(quarter_rows().walls[0], line_m)
+
+
+@pytest.mark.parametrize("place_m", [(4.9, 0.15), (5.1, 0.15)])
+def test_a_side_of_a_curved_wall_stays_and_it_is_told(place_m):
+    plan_rows, before = quarter_rows(), quarter_rows()
+    said = Correction("entry 1", "face", "remove", place_m)
+    (why,) = applying.apply_corrections(plan_rows, [said]).unmatched
+    assert "curved wall" in why and "remove the wall" in why
+    np.testing.assert_equal(vars(plan_rows), vars(before))

@@ -5,6 +5,7 @@ import http.client
 import json
 import os
 import sys
+import tempfile
 import threading
 import time
 
@@ -14,6 +15,7 @@ from scanplan.errors import StageError
 from scanplan.project.corrections_file import read_corrections
 from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
+from scanplan.report import result_links
 
 SURVEY = "floor 0123"
 WALL = {"element": "wall", "at": [1.0, 2.0], "action": "remove"}
@@ -105,6 +107,12 @@ def wait(server):
 def test_the_page_and_the_files_that_it_links_are_shown(server, folder):
     assert ask(server, "report.html") == (200, (folder / "report.html").read_bytes())
     assert ask(server, "plan/plan.pdf") == (200, b"%PDF")
+
+
+def test_every_file_that_a_report_may_link_is_shown(server, folder):
+    for name in result_links._WORDS:
+        (folder / name).write_bytes(b"{}")
+    assert [name for name in result_links._WORDS if ask(server, name)[0] != 200] == []
 
 
 @pytest.mark.parametrize(
@@ -218,6 +226,7 @@ def test_corrections_of_another_survey_are_refused(server):
         ({"survey": SURVEY, "revision": "", "entries": 5}, 400),
         ({"survey": SURVEY, "revision": "", "entries": [5]}, 400),
         ({"survey": SURVEY, "revision": "", "entries": [WALL | {"at": [1e999, 0]}]}, 400),
+        ({"survey": SURVEY, "revision": "", "entries": [{**ROOM, "name": "\ud83c"}]}, 400),
         ({"survey": {"a": 1}, "revision": "", "entries": []}, 400),
         (b" " * (2**18 + 1), 413),
     ],
@@ -317,6 +326,39 @@ def test_corrections_as_geojson_are_left_alone(server, folder):
     assert other.read_text() == "{}" and not other.with_suffix(".yaml").exists()
 
 
+@pytest.mark.parametrize(
+    ("file", "content", "told"),
+    [
+        ("results/floor/report.html", None, "report.html: cannot be read"),
+        ("results/floor/report.html", b'id="data">{</script>', "report.html: is damaged"),
+        (
+            "rec/corrections.yaml",
+            b"corrections:\n- {element: room, at: [3, 2], name: Hall, when: 2026-03-01}\n",
+            "corrections.yaml: entry 1: when is datetime.date(2026, 3, 1)",
+        ),
+        ("rec/corrections.yaml", b"\xff", "corrections.yaml: is no text in UTF-8"),
+    ],
+)
+def test_a_file_that_a_page_cannot_be_told_of_is_told_in_one_line(
+    server, folder, capfd, file, content, told
+):
+    path = folder.parents[1] / file
+    if content is None:
+        path.unlink()
+    else:
+        path.write_bytes(content)
+    for status, said in (ask(server, "api/state"), save(server, WALL)):
+        assert status == 400 and told in said["error"] and "\n" not in said["error"]
+    assert capfd.readouterr().err == ""
+
+
+def test_what_nobody_has_thought_of_is_answered_all_the_same(server, monkeypatch, capfd):
+    monkeypatch.setattr(server.session, "state", lambda: {"entries": [object()]})
+    status, said = ask(server, "api/state")
+    assert status == 500 and said["error"].startswith("TypeError: ")
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_that_cannot_be_written_to_is_told(server, folder):
     place = folder.parents[1] / "rec"
@@ -328,11 +370,51 @@ def test_a_folder_that_cannot_be_written_to_is_told(server, folder):
     assert status == 400 and "cannot be written" in said["error"]
 
 
-def test_a_lone_recording_has_its_corrections_beside_it(folder):
+def test_a_lone_recording_has_its_corrections_and_their_log_beside_it(folder):
     (folder / "source.txt").write_text("rec/my.bag\n")
-    (folder.parents[1] / "rec/my.bag").touch()
-    session = EditSession(folder, [])
-    assert session.place == folder.parents[1] / "rec/my.bag.corrections.yaml"
+    recording = folder.parents[1] / "rec/my.bag"
+    recording.touch()
+    with serving(folder) as server:
+        assert server.session.place == recording.with_name("my.bag.corrections.yaml")
+        save(server, WALL)
+    # another recording in the folder has a log of its own
+    found = sorted(path.name for path in recording.parent.iterdir())
+    assert found == ["my.bag", "my.bag.corrections.log", "my.bag.corrections.yaml"]
+
+
+BY_HAND = """corrections:
+# the cupboard, says the caretaker
+- {element: wall, at: [1.0, 2.0], action: remove}
+"""
+
+
+def test_what_a_person_wrote_is_kept_once_before_it_is_written_anew(server, folder):
+    place = folder.parents[1] / "rec/corrections.yaml"
+    kept = place.with_name("corrections.yaml.by_hand")
+    place.write_text(BY_HAND)
+    for entries in ([WALL, ROOM], [WALL]):
+        assert save(server, *entries, revision=ask(server, "api/state")[1]["revision"])[0] == 200
+        wait(server)
+        assert kept.read_text() == BY_HAND and "caretaker" not in place.read_text()
+
+
+def test_what_a_page_wrote_is_kept_nowhere_else(server, folder):
+    for entries in ([WALL], [WALL, ROOM], []):
+        assert save(server, *entries, revision=ask(server, "api/state")[1]["revision"])[0] == 200
+        wait(server)
+    names = {path.name for path in (folder.parents[1] / "rec").iterdir()}
+    assert names == {"corrections.yaml", "corrections.log"}
+
+
+def test_a_run_that_cannot_begin_is_told_and_leaves_no_settings(folder, tmp_path, monkeypatch):
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(scratch))
+    session = EditSession(folder, [str(tmp_path / "no_program")])
+    with pytest.raises(StageError, match="corrections are saved, but no run begins"):
+        session.save({"survey": SURVEY, "revision": "", "entries": [WALL]})
+    assert list(scratch.iterdir()) == [] and not session.state()["running"]
+    assert session.state()["entries"] == [WALL]
 
 
 def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):

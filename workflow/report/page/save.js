@@ -102,6 +102,8 @@
     if (location.protocol !== "http:" || !byId("run-progress").hidden) return;
     try {
       const state = await server.ask("state");
+      // reports of other storeys lie beside what is served
+      byId("storeys")?.toggleAttribute("hidden", true);
       if (state.status !== 200) return tell(state.error, true);
       server.revision = state.revision;
       byId("save").hidden = false;

@@ -86,16 +86,23 @@ def keep_face(rows: PlanRows, face: Row, said: str) -> None:
     )
 
 
-def remove_face(rows: PlanRows, face: Row, said: str) -> None:
-    """Remove a face; a wall that has no other on that side is seen from one side only."""
-    rows.drop("face", face["face"])
+def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
+    """Remove a face; a wall that has no other on that side is seen from one side only.
+
+    Returns
+    -------
+    str or None
+        Why it was not done.
+    """
     wall = next((row for row in rows.walls if row["wall"] == face["wall"]), None)
-    if wall is None:
-        return
-    sides = {name: wall[name] for name in ("face_left", "face_right")}
+    sides = {} if wall is None else {name: wall[name] for name in ("face_left", "face_right")}
     beside = [name for name, number in sides.items() if number == face["face"]]
-    if not beside:
-        return
+    if wall is None or not beside:
+        rows.drop("face", face["face"])
+        return None
+    if np.isfinite(wall["arc_radius_m"]):
+        return "is a side of a curved wall, which keeps both; remove the wall, and add walls"
+    rows.drop("face", face["face"])
     (lost,) = beside
     same_side = [row for row in _faces_of(rows, wall) if _normal(row) @ _normal(face) > 0]
     if same_side:
@@ -109,6 +116,7 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> None:
         _shift(rows, wall, off_m, np.nan)
         wall[lost] = -1
     wall["corrected"] = wall["corrected"] or said
+    return None
 
 
 def _make_furniture(rows: PlanRows, wall: Row, kind: str) -> None:

@@ -94,6 +94,8 @@ def form_arguments(words: Sequence[str]) -> list[str]:
 def open_results(asked: argparse.Namespace) -> int:
     """Show the report of a folder of results in the browser and take corrections, until Ctrl-C.
 
+    A signal to end does the same; a run that is at work ends with it.
+
     Raises
     ------
     StageError
@@ -107,10 +109,13 @@ def open_results(asked: argparse.Namespace) -> int:
         print(f"scanplan: corrections go to {session.place}; Ctrl-C ends", flush=True)
         if not asked.no_browser and not webbrowser.open(server.address):
             print("scanplan: no browser could be started; open the address in one", flush=True)
-        interrupts.begin_work()
-        with suppress(KeyboardInterrupt):
-            server.serve_forever()
-        session.end()
+        try:
+            with suppress(KeyboardInterrupt):
+                interrupts.begin_work()
+                interrupts.interrupt_on_end()
+                server.serve_forever()
+        finally:
+            session.end()
     return 0
 
 

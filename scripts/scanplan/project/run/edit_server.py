@@ -31,7 +31,7 @@ _HEADERS = {
 """What no other page may do with an answer: keep, embed, guess or frame it, learn its address."""
 _SHOWN = (
     *(".html", ".pdf", ".svg", ".png", ".dxf", ".geojson", ".ifc", ".glb", ".gpkg", ".csv"),
-    *(".json", ".pgm", ".yaml", ".tum", ".txt"),
+    *(".json", ".pgm", ".yaml", ".tum", ".txt", ".bcf", ".laz"),
 )
 """Files that the page links, by suffix; tables and recordings are none of them."""
 
@@ -149,13 +149,20 @@ class _Handler(BaseHTTPRequestHandler):
     def _answer(self, act: Callable[[], Mapping[str, Any]]) -> None:
         status = HTTPStatus.OK
         try:
-            said = act()
-        except ConflictError as error:
-            status = HTTPStatus.CONFLICT
-            said = {**self._served.session.state(), "error": str(error)}
+            try:
+                said = act()
+            except ConflictError as error:
+                status = HTTPStatus.CONFLICT
+                said = {**self._served.session.state(), "error": str(error)}
+            content = json.dumps(said).encode()
         except StageError as error:
-            status, said = HTTPStatus.BAD_REQUEST, {"error": str(error)}
-        self._send(status, "application/json", json.dumps(said).encode())
+            self._refuse(HTTPStatus.BAD_REQUEST, str(error))
+        except (OSError, TypeError, ValueError, RecursionError) as error:
+            # of files that others write at the same time: a page waits for a line, not for nothing
+            fault = f"{type(error).__name__}: {error}".splitlines()[0]
+            self._refuse(HTTPStatus.INTERNAL_SERVER_ERROR, fault)
+        else:
+            self._send(status, "application/json", content)
 
     def _refuse(self, status: HTTPStatus, fault: str) -> None:
         self._send(status, "application/json", json.dumps({"error": fault}).encode())

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 import subprocess
 import tempfile
@@ -19,9 +20,11 @@ from scanplan.project.dataset_files import is_survey_file
 from scanplan.store import atomic
 
 PAGE = "report.html"
-_LOG = "corrections.log"
+_BY_HAND = ".by_hand"  # added to the name of a file that a person wrote, to keep it
 _DATA = re.compile(rb'id="data">(.*?)</script>', re.DOTALL)
 """What a page states of the plan that it shows, as JSON."""
+_OF_PAGE = re.compile(rb"(survey: [^#\n]*\n|corrections:( \[\])?\n|- \{[^#\n]*\}\n)*")
+"""A file of corrections in which nothing stands but entries, a line each: no comment is lost."""
 _STAGE = re.compile(r"^ *(\d+)/(\d+) (.*)$")
 """A line of a run on a stage that has ended: how many have, of how many."""
 _MOST_LETTERS = 200  # of a line of the run that a page shows
@@ -74,7 +77,8 @@ class EditSession:
         Raises
         ------
         StageError
-            If the file of corrections is damaged, or a corrections.geojson.
+            If the file of corrections has a mistake, or is a corrections.geojson, or there is no
+            page.
         """
         entries, revision = self._read()
         page = self._read_page()
@@ -139,16 +143,25 @@ class EditSession:
 
     def end(self) -> None:
         """End the run, if one is at work; what it has made stays."""
-        if self._is_running() and self._run is not None:
-            self._run.terminate()
-            self._listener.join()
+        # what is being saved has begun its run first
+        with self._guard:
+            if self._is_running() and self._run is not None:
+                self._run.terminate()
+                self._listener.join()
 
     def _is_running(self) -> bool:
         return self._listener.is_alive()
 
     def _read_page(self) -> dict[str, Any]:
-        found = _DATA.search((self.results / PAGE).read_bytes())
-        return json.loads(found[1]) if found else {}
+        page = self.results / PAGE
+        try:
+            found = _DATA.search(page.read_bytes())
+            return json.loads(found[1]) if found else {}
+        except OSError as error:
+            fault = f"cannot be read ({error.strerror})"
+        except ValueError:
+            fault = "is damaged"
+        raise StageError(f"{page}: {fault}; wait for a run that is at work, or run it again")
 
     def _read(self) -> tuple[list[dict[str, Any]], str]:
         """Return the entries of the file, and a digest of it."""
@@ -157,6 +170,8 @@ class EditSession:
             return [], ""
         if found != self.place:
             raise StageError(f"{found}: is not written here; move it away, or edit it by hand")
+        # what a page cannot be told is a mistake, too: a date without quotes, a number that is none
+        corrections_file.read_corrections(found)
         entries = corrections_file.read_entries(found)
         return entries, hashlib.sha256(found.read_bytes()).hexdigest()
 
@@ -164,19 +179,35 @@ class EditSession:
         lines = [f"- {json.dumps(entry, ensure_ascii=False)}\n" for entry in entries]
         head = f"survey: {json.dumps(survey, ensure_ascii=False)}\ncorrections:"
         text = f"{head}\n{''.join(lines)}" if lines else f"{head} []\n"
+        try:
+            content = text.encode()
+        except UnicodeEncodeError as error:
+            fault = f"has {text[error.start]!r}, half of a character; write both or none"
+            raise StageError(f"what is said {fault}") from None
         with atomic.replace_file(self.place) as temporary:
-            temporary.write_text(text, encoding="utf-8")
+            temporary.write_bytes(content)
             try:
                 corrections_file.read_corrections(temporary)
             except StageError as error:
                 raise StageError(str(error).replace(f"{temporary}: ", "")) from None
+            self._keep_written()
+
+    def _keep_written(self) -> None:
+        """Keep the file that a person wrote beside it, once, as comments are not written anew."""
+        kept = self.place.with_name(f"{self.place.name}{_BY_HAND}")
+        if not self.place.exists() or os.path.lexists(kept):
+            return
+        content = self.place.read_bytes()
+        if not _OF_PAGE.fullmatch(content):
+            atomic.write_bytes(kept, content)
 
     def _note(self, before: Sequence[Any], after: Sequence[Any]) -> None:
         """Add to the log what was said and taken back, and when."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         lines = [("said", entry) for entry in after if entry not in before]
         lines += [("taken back", entry) for entry in before if entry not in after]
-        place = self.place.with_name(_LOG)
+        # by the recording's name: another one in its folder has a log of its own
+        place = self.place.with_suffix(".log")
         with atomic.explain_unwritable(place), place.open("a", encoding="utf-8") as log:
             for what, entry in lines:
                 log.write(json.dumps({"saved": now, what: entry}, ensure_ascii=False) + "\n")
@@ -186,24 +217,32 @@ class EditSession:
         made = self._made
         datasets = made.storeys or [made.dataset] * (made.dataset is not None)
         asked = [f"dataset={json.dumps(datasets)}"] if datasets else []
-        with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
-            yaml.safe_dump(made.settings, file)
-        given = ["--configfile", file.name] if made.settings else []
+        settings = None
+        try:
+            with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
+                settings = Path(file.name)
+                yaml.safe_dump(made.settings, file)
+            given = ["--configfile", file.name] if made.settings else []
+            self._run = subprocess.Popen(
+                [*self._command, *given, *(["--config", *asked] if asked else [])],
+                cwd=self._root,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                text=True,
+                errors="replace",
+            )
+        except OSError as error:
+            if settings is not None:
+                settings.unlink(missing_ok=True)
+            fault = f"the corrections are saved, but no run begins ({error.strerror})"
+            raise StageError(f"{fault}; run the dataset again") from None
         self._lines = []
-        self._run = subprocess.Popen(
-            [*self._command, *given, *(["--config", *asked] if asked else [])],
-            cwd=self._root,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-        )
-        self._listener = threading.Thread(target=self._listen, args=(self._run, file.name))
+        self._listener = threading.Thread(target=self._listen, args=(self._run, settings))
         self._listener.daemon = True
         self._listener.start()
 
-    def _listen(self, run: subprocess.Popen[str], settings: str) -> None:
+    def _listen(self, run: subprocess.Popen[str], settings: Path) -> None:
         with run:
             self._lines.extend(line.rstrip() for line in run.stdout or ())
-        Path(settings).unlink(missing_ok=True)
+        settings.unlink(missing_ok=True)
