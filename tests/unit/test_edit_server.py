@@ -104,6 +104,18 @@ def wait(server):
     raise AssertionError("the run does not end")
 
 
+def test_results_are_served_on_a_port_of_their_own_and_a_second_server_on_another(folder):
+    with serving(folder) as first, serving(folder) as second:
+        assert second.server_port != first.server_port
+    with serving(folder) as again:
+        assert again.server_port == first.server_port
+
+
+def test_results_are_found_by_a_link_to_their_folder(folder, tmp_path):
+    (tmp_path / "linked").symlink_to(folder.parent)
+    assert EditSession(tmp_path / "linked/floor", []).results == folder
+
+
 def test_the_page_and_the_files_that_it_links_are_shown(server, folder):
     assert ask(server, "report.html") == (200, (folder / "report.html").read_bytes())
     assert ask(server, "plan/plan.pdf") == (200, b"%PDF")

@@ -6,8 +6,10 @@ name that leads here, gets nothing.
 
 import json
 import mimetypes
+import os
 import secrets
 import sys
+import zlib
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -18,6 +20,7 @@ from scanplan.errors import StageError
 from scanplan.project.run.edit_session import ConflictError, EditSession
 
 _HERE = "127.0.0.1"
+_FIRST_PORT, _N_PORTS = 49152, 10_000  # of those that nobody has registered
 _MOST_BYTES = 2**18
 """Of what a page sends: as much as is read of a file of corrections."""
 _PATIENCE_S = 30  # for a request that has begun: a page here needs milliseconds
@@ -37,7 +40,9 @@ _SHOWN = (
 
 
 class EditServer(ThreadingHTTPServer):
-    """The server of a session, on a free port.
+    """The server of a session, on a port of its results while that is free.
+
+    A browser keeps things by the port: changes that were not saved are there again.
 
     Attributes
     ----------
@@ -47,9 +52,15 @@ class EditServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    # elsewhere it lets two servers share a port
+    allow_reuse_address = os.name == "posix"
 
     def __init__(self, session: EditSession) -> None:
-        super().__init__((_HERE, 0), _Handler)
+        own = _FIRST_PORT + zlib.crc32(str(session.results).encode()) % _N_PORTS
+        try:
+            super().__init__((_HERE, own), _Handler)
+        except OSError:
+            super().__init__((_HERE, 0), _Handler)
         self.session = session
         self.token = secrets.token_urlsafe(24)
 

@@ -52,6 +52,8 @@ class EditSession:
 
     def __init__(self, results: Path, command: Sequence[str]) -> None:
         self.results = results.absolute()
+        if self.results.parent.name != "results":
+            self.results = results.resolve()  # a link to it
         page = results / PAGE
         if not page.is_file() or self.results.parent.name != "results":
             raise StageError(f"{page}: there is no such report; name a folder below results/")
