@@ -17,6 +17,8 @@ from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings
 
 _PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+_OF_MODELS = ("as_built.ifc", "deviations.bcf")
+"""What an earlier design has left, if it was a model."""
 
 
 def compare_design(
@@ -54,6 +56,8 @@ def compare_design(
     StageError
         If the design is damaged, or the survey fits none of its storeys.
     """
+    for made in _OF_MODELS:
+        Path(outputs["table"]).with_name(made).unlink(missing_ok=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     files = {part: built[part] for part in _PLAN}
     plan = floorplan_files.read_floorplan(files, name, **assumed_m)
