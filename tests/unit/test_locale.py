@@ -188,3 +188,15 @@ def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):
 def test_a_file_that_is_not_there_is_told(read):
     with pytest.raises(StageError, match="does not exist"):
         read("nowhere.yaml")
+
+
+@pytest.mark.parametrize(
+    ("read", "said"),
+    [
+        (read_words, r"plan\.export\.language: it does not exist; give one of en, de"),
+        (read_layers, r"plan\.export\.layers: it does not exist; give one of din"),
+    ],
+)
+def test_a_language_or_layers_that_are_not_ours_are_refused_with_the_key_and_what_is(read, said):
+    with pytest.raises(StageError, match=said):
+        read("it")

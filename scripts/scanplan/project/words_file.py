@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from scanplan.types import FilePath
 
 _CONFIG = Path(__file__).resolve().parents[3] / "config"
+_KEYS = {"words": "plan.export.language", "layers": "plan.export.layers"}
 _PLACE = re.compile(r"\{n?\}")
 _FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`]')
 """What names of layers must not have in DXF."""
@@ -105,5 +106,10 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
 
 def _find_file(name: str, folder: str) -> Path:
     """Return one of our files by its name, or else the file of that name."""
-    ours = _CONFIG / folder / f"{name}.yaml"
-    return ours if re.fullmatch(r"[a-z]+", name) and ours.is_file() else Path(name)
+    ours = {file.stem: file for file in sorted((_CONFIG / folder).glob("*.yaml"))}
+    if name in ours:
+        return ours[name]
+    if not Path(name).exists():
+        known = ", ".join([*(["en"] if folder == "words" else []), *ours])
+        raise StageError(f"{_KEYS[folder]}: {name} does not exist; give one of {known}, or a file")
+    return Path(name)
