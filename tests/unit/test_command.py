@@ -1,5 +1,6 @@
 """The command of an installed release, and the command of Snakemake that it stands for."""
 
+import contextlib
 import json
 import os
 import re
@@ -136,8 +137,14 @@ def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
     (modules / "snakemake.py").write_text(stub)
     places = [str(command.SNAKEFILE.parents[1] / "scripts"), str(modules)]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(places), "TMPDIR": str(scratch)}
-    words = [sys.executable, "-c", MAIN, "open", str(results), "--no-browser"]
-    with subprocess.Popen(words, env=env, stdout=subprocess.PIPE, text=True) as opened:
+    # what runs the tests may ignore Ctrl-C, and what it begins inherits that
+    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    words = [sys.executable, "-c", heard + MAIN, "open", str(results), "--no-browser"]
+    with (
+        subprocess.Popen(words, env=env, stdout=subprocess.PIPE, text=True) as opened,
+        contextlib.ExitStack() as at_last,
+    ):
+        at_last.callback(opened.kill)
         page = re.search(r"http://\S+/", opened.stdout.readline())[0]
         origin = page.rpartition("/")[0].rpartition("/")[0]
         asked = json.dumps({"survey": "floor", "revision": "", "entries": []}).encode()
