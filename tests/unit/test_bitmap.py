@@ -2,6 +2,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import ndimage
@@ -93,3 +94,13 @@ def test_distances_to_the_outline_are_scipys_to_the_bit(rows, columns, share, se
     with mock.patch.object(bitmap, "_TILE", 8):
         np.testing.assert_array_equal(bitmap.distances_to_outline(inside), expected)
     np.testing.assert_array_equal(bitmap.distances_of_inner(inside), expected[inside])
+
+
+@pytest.mark.parametrize(
+    "bounds", [(-2, 1, 3, 4), (3, -2, 9, 2), (2, 2, 9, 9), (-9, -9, 9, 9), (7, 1, 9, 4)]
+)
+def test_of_a_polygon_what_lies_beyond_the_grid_is_left_out(bounds):
+    x0, y0, x1, y1 = np.clip(bounds, 0, 5)
+    expected = np.zeros((5, 5), bool)
+    expected[y0:y1, x0:x1] = True
+    assert (bitmap.fill_polygons([shapely.box(*bounds)], FIVE) == expected).all()

@@ -194,7 +194,6 @@ def test_rooms_with_curved_walls_are_found(recordings_dir):
         min_width_m=0.5,
         unpaired_m=0.1,
         floor=floor,
-        planar=True,
     )
     assert sum(room.polygon.area for room in rooms) >= 0.9 * floor.area
     assert all(isinstance(room.polygon, Polygon | MultiPolygon) for room in rooms)

@@ -112,13 +112,9 @@ def _fill_around(
     plan: FloorPlan, grid: GridMap, is_wanted: BoolArray, around_m: float
 ) -> BoolArray:
     """Return which cells lie within the walls of openings, or so far around these."""
-    low_m = np.array(grid.origin_m)
-    high_m = low_m + grid.resolution_m * np.array(grid.cells.shape[::-1])
     around = overlays.buffer_shapes(plan.gaps[is_wanted], around_m)
-    # filling counts edges from the left of the grid, so none may lie beyond it
-    grown = overlays.clip_areas(around, *low_m.tolist(), *high_m.tolist())
-    under = bitmap.Grid(low_m, grid.resolution_m, grid.cells.shape)
-    return bitmap.fill_polygons(np.asarray(grown, object), under)[::-1]
+    under = bitmap.Grid(np.array(grid.origin_m), grid.resolution_m, grid.cells.shape)
+    return bitmap.fill_polygons(around, under)[::-1]
 
 
 def format_pgm(grid: GridMap) -> bytes:

@@ -110,17 +110,21 @@ def rasterise_lines(lines_m: npt.ArrayLike, grid: Grid) -> BoolArray:
 def fill_polygons(polygons: Iterable[BaseGeometry], grid: Grid) -> BoolArray:
     """Return which cells (rows, columns) have their middle in any of the polygons.
 
-    Such a cell has an odd number of edges on its left.
+    Such a cell has an odd number of edges on its left. What lies beyond the grid is left out.
     """
     is_odd = np.zeros(grid.shape, np.uint8)
+    n_rows, n_columns = grid.shape
     merged = overlays.unite_areas(list(polygons))
     for ring in shapely.get_rings(shapely.get_parts(merged)):
         corners = (shapely.get_coordinates(ring) - grid.low_m) / grid.cell_m - 0.5
         for (x0, y0), (x1, y1) in pairwise(corners):
-            rows = np.arange(math.ceil(min(y0, y1)), math.ceil(max(y0, y1)))
-            if len(rows):
+            first, last = max(math.ceil(min(y0, y1)), 0), min(math.ceil(max(y0, y1)), n_rows)
+            if first < last:
+                rows = np.arange(first, last)
                 columns = np.ceil(x0 + (rows - y0) * (x1 - x0) / (y1 - y0)).astype(int)
-                is_odd[rows, columns] ^= 1
+                # an edge beyond the last cell has none on its right
+                is_left = columns < n_columns
+                is_odd[rows[is_left], np.maximum(columns[is_left], 0)] ^= 1
     return np.bitwise_xor.accumulate(is_odd, axis=1).astype(bool)
 
 

@@ -215,9 +215,10 @@ def _page_figure(name: str, svg: str) -> PageFigure:
 
 
 def _find_start_m(survey: SurveyFacts) -> FloatArray:
-    """Return where (2,) the survey began, map frame."""
-    first = int(np.argmin(survey.registration["t_ns"]))
-    return np.array([survey.registration[c][first] for c in ("x_m", "y_m")], float)
+    """Return where (2,) the first scan was taken that has a place, map frame."""
+    places_m = np.column_stack([survey.registration[c] for c in ("x_m", "y_m")])
+    known = np.flatnonzero(np.isfinite(places_m).all(axis=1))
+    return places_m[known[np.argmin(survey.registration["t_ns"][known])]]
 
 
 def _script_data(
