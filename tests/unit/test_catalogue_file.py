@@ -54,6 +54,7 @@ def test_ours_is_read_where_none_is_given():
         ("size_m: 0.08", "size_m: 8", "walls, entry 1"),
         ("size_m: 0.08", "size_m: .nan", "walls, entry 1"),
         ("size_m: 0.08", "size_m: true", "walls, entry 1"),
+        ("size_m: 0.08", f"size_m: 1{400 * '0'}", "walls, entry 1"),
         ("size_m: 0.08", "size_m: '0.08'", "walls, entry 1"),
         ("size_m: 0.3", "size_m: 0.08", "walls, entry 2"),
         ("name: thick", "name: thin", "walls, entry 2"),

@@ -57,6 +57,7 @@ def test_our_table_is_that_of_the_standard():
     [
         ({"wall": [10]}, "1 limits for 1 sizes, expected 2"),
         ({"wall": [10, -1]}, "-1, expected 0.1"),
+        ({"wall": [10, 10**400]}, "expected 0.1"),
         ({"wall": 10}, "no list"),
         ({"upto_m": [3, 1], **{table: [1, 2, 3] for table in TABLES}}, "does not increase"),
         ({"roof": [1, 2]}, "too much or too little: roof"),

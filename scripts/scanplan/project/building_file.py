@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files, overlooked_files, texts, user_file
-from scanplan.project.yaml_file import read_yaml
+from scanplan.project.yaml_file import is_number, read_yaml
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
@@ -180,7 +180,7 @@ def _read_storey(place: str, values: Any, is_shared: bool, *, is_first: bool) ->
     elevation_m = values.get("elevation_m")
     if elevation_m is None and not is_shared:
         raise StageError(f"{place}: has no elevation_m; give it, or `frame: shared` for all")
-    if elevation_m is not None and not _is_number(elevation_m, _HIGHEST_M):
+    if elevation_m is not None and not is_number(elevation_m, -_HIGHEST_M, _HIGHEST_M):
         expected = f"expected metres, up to {_HIGHEST_M:g}"
         raise StageError(f"{place}: elevation_m is {elevation_m!r}, {expected}")
     name = texts.check_text(f"{place}: name", values.get("name", values["dataset"]))
@@ -197,9 +197,6 @@ def _read_storey(place: str, values: Any, is_shared: bool, *, is_first: bool) ->
 def _is_motion(value: Any) -> bool:
     limits = (_FARTHEST_M, _FARTHEST_M, 360.0)
     is_triple = isinstance(value, list) and len(value) == len(limits)
-    return is_triple and all(map(_is_number, value, limits))
-
-
-def _is_number(value: Any, limit: float) -> bool:
-    is_plain = isinstance(value, int | float) and not isinstance(value, bool)
-    return is_plain and abs(value) <= limit
+    return is_triple and all(
+        is_number(of, -limit, limit) for of, limit in zip(value, limits, strict=True)
+    )

@@ -6,13 +6,12 @@ before it has begun.
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import read_yaml
+from scanplan.project.yaml_file import is_number, read_yaml
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
@@ -89,7 +88,6 @@ def _check_sizes(place: str, kind: str, entries: object, codes: dict[str, str]) 
 
 def _check_size(place: str, value: Any, limits_m: tuple[float, float]) -> float:
     low_m, high_m = limits_m
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not (is_number and math.isfinite(value) and low_m <= value <= high_m):
+    if not is_number(value, low_m, high_m):
         raise StageError(f"{place} is {value!r}, expected {low_m:g} to {high_m:g}; give metres")
     return float(value)

@@ -12,6 +12,7 @@ from typing import Any
 
 from scanplan.errors import StageError
 from scanplan.project import reference_systems, texts
+from scanplan.project.yaml_file import is_number
 
 SIZES_M = {
     "thickness_m": (0.01, 3.0),
@@ -66,16 +67,11 @@ def find_middle(start_m: Place, end_m: Place) -> Place:
 
 
 def _check_place(entry: str, key: str, value: Any) -> Place:
-    if not (isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))):
+    is_pair = isinstance(value, list) and len(value) == 2
+    if not (is_pair and all(is_number(of, -FARTHEST_M, FARTHEST_M) for of in value)):
         expected = f"expected two numbers [x, y] in metres, up to {FARTHEST_M:g}"
         raise StageError(f"{entry}: {key} is {value!r}, {expected}")
     return float(value[0]), float(value[1])
-
-
-def _is_number(value: Any) -> bool:
-    is_plain = isinstance(value, int | float) and not isinstance(value, bool)
-    # NaN is not, an integer may be too large for a float
-    return is_plain and abs(value) <= FARTHEST_M
 
 
 def _check_line(entry: str, key: str, value: Any) -> tuple[Place, Place]:
@@ -94,7 +90,7 @@ def _check_size(entry: str, key: str, value: Any) -> float | None:
     if value is None:
         return None
     least_m, most_m = SIZES_M[key]
-    if not _is_number(value) or not least_m <= value <= most_m:
+    if not is_number(value, least_m, most_m):
         limit = f"expected {least_m:g} to {most_m:g} m"
         raise StageError(f"{entry}: {key} is {value!r}, {limit}; leave it out if not known")
     return float(value)

@@ -6,15 +6,13 @@ before it has begun.
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import read_yaml
+from scanplan.project.yaml_file import is_number, list_ours, read_yaml
 
-_OURS = Path(__file__).resolve().parents[3] / "config/tolerances"
 TABLES = ("wall", "opening", "column")
 """What has limits."""
 _LIMITS_MM = (0.1, 1000.0)
@@ -39,12 +37,11 @@ def read_tolerances(named: str) -> dict[str, Any]:
     StageError
         If it is missing or damaged, or a value is wrong.
     """
-    ours = _OURS / f"{named}.yaml"
-    if not ours.is_file() and not Path(named).suffix:
-        known = ", ".join(sorted(file.stem for file in _OURS.glob("*.yaml")))
-        fault = f"{named} is no table of ours ({known}), and no file"
+    ours = list_ours("tolerances")
+    if named not in ours and not Path(named).suffix:
+        fault = f"{named} is no table of ours ({', '.join(ours)}), and no file"
         raise StageError(f"plan.design.tolerances: {fault}; name one of them or a .yaml file")
-    file = ours if ours.is_file() else Path(named)
+    file = ours.get(named, Path(named))
     values = read_yaml(file)
     wanted = {"title", "upto_m", *TABLES}
     if set(values) != wanted:
@@ -70,7 +67,6 @@ def _check_row(place: str, values: object, limits: tuple[float, float]) -> list[
         raise StageError(f"{place} is no list of 1 to {_MOST} numbers; {_REMEDY}")
     low, high = limits
     for value in values:
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not (is_number and math.isfinite(value) and low <= value <= high):
+        if not is_number(value, low, high):
             raise StageError(f"{place} has {value!r}, expected {low:g} to {high:g}; {_REMEDY}")
     return [float(value) for value in values]

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import read_yaml
+from scanplan.project.yaml_file import list_ours, read_yaml
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
 
-_CONFIG = Path(__file__).resolve().parents[3] / "config"
 _KEYS = {"words": "plan.export.language", "layers": "plan.export.layers"}
 _PLACE = re.compile(r"\{n?\}")
 _FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`]')
@@ -48,7 +47,7 @@ def read_words(language: str) -> dict[str, Any]:
     values = read_yaml(file)
     if set(values) != {"decimal", "date", "phrases"}:
         raise StageError(
-            f"{file}: expected the keys decimal, date and phrases; see {_CONFIG.name}/words/de.yaml"
+            f"{file}: expected the keys decimal, date and phrases; see config/words/de.yaml"
         )
     if values["decimal"] not in (".", ","):
         raise StageError(f"{file}: decimal is {values['decimal']!r}, expected '.' or ','")
@@ -106,7 +105,7 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
 
 def _find_file(name: str, folder: str) -> Path:
     """Return one of our files by its name, or else the file of that name."""
-    ours = {file.stem: file for file in sorted((_CONFIG / folder).glob("*.yaml"))}
+    ours = list_ours(folder)
     if name in ours:
         return ours[name]
     if not Path(name).exists():

@@ -7,6 +7,7 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import yaml
@@ -23,6 +24,7 @@ _MOST_BYTES = 2**18
 anew."""
 
 
+_CONFIG = Path(__file__).resolve().parents[3] / "config"
 _OCTAL = re.compile(r"[-+]?0[0-7_]+")
 
 
@@ -74,6 +76,19 @@ class _Loader(yaml.SafeLoader):
 
 def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:
     return yaml.MarkedYAMLError(problem=problem, problem_mark=place.start_mark)
+
+
+def list_ours(folder: str) -> dict[str, Path]:
+    """Return the files of a folder of `config`, by what a person names them, in order."""
+    return {file.stem: file for file in sorted((_CONFIG / folder).glob("*.yaml"))}
+
+
+def is_number(value: object, low: float, high: float) -> bool:
+    """Return whether a value that was read is a number within finite limits, NaN not among them.
+
+    An integer may be larger than any float; `True` is no number.
+    """
+    return isinstance(value, int | float) and not isinstance(value, bool) and low <= value <= high
 
 
 def read_yaml(path: FilePath) -> dict[Any, Any]:
