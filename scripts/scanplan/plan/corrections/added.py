@@ -63,7 +63,7 @@ def lay_beside(wall: Row, line_m: FloatArray) -> FloatArray:
 def add_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str, said: str) -> None:
     """Add an opening in a wall where a line (2, 2) is beside it, and cut the wall's faces."""
     ends_m = lay_beside(wall, line_m)
-    left_m = max(_half_m(wall), REACH_M) * left_normals(ends_m[None])[0]
+    left_m = max(half_m_of(wall), REACH_M) * left_normals(ends_m[None])[0]
     opening = blank_row(schemas.OPENINGS) | end_columns(ends_m)
     opening |= {
         "opening": rows.next_number("opening"),
@@ -87,14 +87,14 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     dict or None
         The wall's row; None where the opening is in none.
     """
-    wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
+    wall = rows.wall_of(opening)
     if wall is None:
         return None
     line_m = ends_of(opening)
     _, along, _ = lay_frame(wall, line_m)
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
-    half_m = _half_m(wall)
+    half_m = half_m_of(wall)
     if wall["face_left"] >= 0:
         add_face(rows, wall["wall"], line_m, half_m)
     if wall["face_right"] >= 0:
@@ -122,7 +122,7 @@ def add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int
 
 def cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
     """Cut an opening out of the faces of its wall; a second part gets a number of its own."""
-    half_m = np.array([_half_m(wall) + REACH_M])
+    half_m = np.array([half_m_of(wall) + REACH_M])
     (gap,) = floorplan.buffer_lines(ends_m[None], half_m)
     for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
         parts = shapely.get_parts(overlays.subtract_lines(shapely.LineString(ends_of(face)), gap))
@@ -157,14 +157,14 @@ def lay_frame(wall: Row, line_m: FloatArray) -> tuple[FloatArray, FloatArray, fl
     return corners_m[row] - before_m * along, along, float(axis.length)
 
 
-def _half_m(wall: Row) -> float:
+def half_m_of(wall: Row) -> float:
+    """Return half of a wall's thickness; 0 where it is not known."""
     return float(np.nan_to_num(wall["thickness_m"])) / 2
 
 
 def _room_at(rows: PlanRows, place_m: FloatArray) -> int:
-    place = shapely.Point(place_m)
-    inside = [r["room"] for r in rows.rooms if shapely.from_wkb(r["geometry"]).covers(place)]
-    return inside[0] if inside else -1
+    room = rows.room_at(shapely.Point(place_m))
+    return -1 if room is None else room["room"]
 
 
 def end_columns(line_m: FloatArray) -> Row:

@@ -107,7 +107,7 @@ def _find(rows: PlanRows, correction: Correction) -> Row | None:
     """Return the row that an entry is of; None where there is none."""
     place = shapely.Point(correction.at_m)
     if correction.element == "room":
-        return outlines.find_room(rows, place)
+        return rows.room_at(place)
     return added.find_nearest(rows.of(correction.element), place)
 
 

@@ -50,12 +50,10 @@ def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str 
     """
     line_m = None if correction.line_m is None else np.array(correction.line_m)
     if correction.width_m is not None:
-        middle_m = added.ends_of(opening).mean(axis=0) if line_m is None else line_m.mean(axis=0)
-        half_m = (
-            correction.width_m / 2 * _along(added.ends_of(opening) if line_m is None else line_m)
-        )
-        line_m = np.stack([middle_m - half_m, middle_m + half_m])
-    wall = next((row for row in rows.walls if row["wall"] == opening["wall"]), None)
+        said_m = added.ends_of(opening) if line_m is None else line_m
+        half_m = correction.width_m / 2 * _along(said_m)
+        line_m = said_m.mean(axis=0) + np.stack([-half_m, half_m])
+    wall = rows.wall_of(opening)
     if line_m is not None and wall is not None:
         if fault := added.explain_misfit(wall, line_m):
             return fault
@@ -73,7 +71,7 @@ def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str 
 
 def keep_face(rows: PlanRows, face: Row, said: str) -> None:
     """Let a face be a side of a wall that a person has seen; a single one becomes a wall."""
-    wall = next((row for row in rows.walls if row["wall"] == face["wall"]), None)
+    wall = rows.wall_of(face)
     if wall is not None:
         wall |= {"corrected": wall["corrected"] or said, "verify": False}
         return
@@ -94,7 +92,7 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
     str or None
         Why it was not done.
     """
-    wall = next((row for row in rows.walls if row["wall"] == face["wall"]), None)
+    wall = rows.wall_of(face)
     sides = {} if wall is None else {name: wall[name] for name in ("face_left", "face_right")}
     beside = [name for name, number in sides.items() if number == face["face"]]
     if wall is None or not beside:
@@ -112,7 +110,7 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
         rows.openings = [row for row in rows.openings if row["wall"] != wall["wall"]]
     else:
         side = 1.0 if lost == "face_right" else -1.0
-        off_m = side * float(np.nan_to_num(wall["thickness_m"])) / 2
+        off_m = side * added.half_m_of(wall)
         _shift(rows, wall, off_m, np.nan)
         wall[lost] = -1
     wall["corrected"] = wall["corrected"] or said
@@ -120,7 +118,7 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
 
 
 def _make_furniture(rows: PlanRows, wall: Row, kind: str) -> None:
-    half_m = max(float(np.nan_to_num(wall["thickness_m"])), _FRONT_M) / 2
+    half_m = max(added.half_m_of(wall), _FRONT_M / 2)
     ground = overlays.buffer_shapes(floorplan.draw_axis(wall), half_m, cap_style="flat")
     number = max((row["furniture"] for row in rows.furniture), default=-1) + 1
     known = {name: wall[name] for name in ("z_min_m", "z_max_m", "n_points", "n_scans")}

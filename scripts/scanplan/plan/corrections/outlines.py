@@ -33,7 +33,7 @@ def split_room(rows: PlanRows, line_m: FloatArray, said: str) -> str | None:
         Why it was not done.
     """
     middle = shapely.Point(line_m.mean(axis=0))
-    room = find_room(rows, middle)
+    room = rows.room_at(middle)
     if room is None:
         return "lies in no room"
     outline = shapely.from_wkb(room["geometry"])
@@ -73,7 +73,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
     str or None
         Why it was not done.
     """
-    room, other = (find_room(rows, shapely.Point(place)) for place in (place_m, other_m))
+    room, other = (rows.room_at(shapely.Point(place)) for place in (place_m, other_m))
     if room is None or other is None:
         return "lies in no room, or the place that it is one with does"
     if room is other:
@@ -98,12 +98,6 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
             opening[side] = room["room"] if is_others else opening[side]
     rows.openings = [row for row in rows.openings if not _is_inside(row, room["room"])]
     return None
-
-
-def find_room(rows: PlanRows, place: shapely.Point) -> Row | None:
-    """Return the row of the room that a place is in; None of none."""
-    inside = [row for row in rows.rooms if shapely.from_wkb(row["geometry"]).covers(place)]
-    return inside[0] if inside else None
 
 
 def _cut_through(
@@ -131,7 +125,7 @@ def _fill_between(one: BaseGeometry, two: BaseGeometry, apart_m: float) -> BaseG
 
 def _draw_walls(rows: PlanRows) -> BaseGeometry:
     """Return the ground of walls, less their openings."""
-    half_m = [max(float(np.nan_to_num(wall["thickness_m"])) / 2, _SLACK_M) for wall in rows.walls]
+    half_m = [max(added.half_m_of(wall), _SLACK_M) for wall in rows.walls]
     axes = np.array([floorplan.draw_axis(wall) for wall in rows.walls], object)
     bodies = overlays.buffer_shapes(axes, np.array(half_m), cap_style="square")
     cuts = [shapely.LineString(added.ends_of(opening)) for opening in rows.openings]

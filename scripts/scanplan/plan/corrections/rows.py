@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import shapely
+
 from scanplan.plan import plan_tables
 from scanplan.store import schemas
 from scanplan.types import Array, Columns
@@ -34,6 +36,15 @@ class PlanRows:
     def of(self, element: str) -> list[Row]:
         """Return the rows of walls, faces, openings or rooms by the singular."""
         return getattr(self, f"{element}s")
+
+    def wall_of(self, row: Row) -> Row | None:
+        """Return the wall that a face or an opening is of; None of none."""
+        return next((wall for wall in self.walls if wall["wall"] == row["wall"]), None)
+
+    def room_at(self, place: shapely.Point) -> Row | None:
+        """Return the room that a place is in; None of none."""
+        at = (room for room in self.rooms if shapely.from_wkb(room["geometry"]).covers(place))
+        return next(at, None)
 
     def drop(self, element: str, number: int) -> None:
         """Remove a wall with its faces and evidence, an opening, or a room and what names it.
