@@ -5,7 +5,7 @@ import pytest
 
 from helpers.ray_making import NORTH, rays, turned
 from scanplan.geometry.lines import Line
-from scanplan.rays.expected_returns import ALL_HEIGHTS_M, SentRays, count_sent_rays
+from scanplan.rays.expected_returns import SentRays, watch_columns
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.usual_returns import count_returns_below
 
@@ -62,6 +62,13 @@ def wall_or(beyond_m):
     return range_m
 
 
+def count_sent_rays(looked, face, low_m, count, column_m, heights_m):
+    """Return the rays that were sent to the columns of a surface between two heights."""
+    columns = watch_columns(looked, face, low_m, count, column_m)
+    expected = columns.expect_returns(*map(columns.per_deg_below, heights_m))
+    return columns.count_sent(heights_m, expected)
+
+
 def sent(range_m, low_m=-1.0, count=40, scans=1, heights_m=(0.0, 2.5)):
     """Return the rays sent to columns of 5 cm of the wall, of scans that see the same."""
     looked = rays(*[((0, 2, 1), points_of(range_m))] * scans)
@@ -97,7 +104,7 @@ def test_of_a_plane_beams_are_expected_where_it_looks(angle_deg):
     looked = rays((sensor_m, ends_m), planar=True)
     line = Line(np.zeros(2), turned([0.0, 1.0], angle_rad))
     face = cast_at_face(looked, line, -2.0, 2.0, at_m=0.08)
-    found = count_sent_rays(looked, face, -2.0, 80, 0.05, ALL_HEIGHTS_M)
+    found = count_sent_rays(looked, face, -2.0, 80, 0.05, tuple(looked.row_edges_m))
     assert found.expected[0, :40].sum() == pytest.approx(0, abs=1)
     assert found.expected[0, 40:].sum() == pytest.approx(44.5, abs=1)
     assert found.returned.sum() == pytest.approx(44.5, abs=1)

@@ -27,7 +27,6 @@ Their rays are few, and much stands before the surface.
 """
 
 _GRAZING = np.tan(GRAZING_RAD)
-ALL_HEIGHTS_M = (-np.inf, np.inf)
 _WIDTH = 5  # columns that are judged together: single ones expect too few rays
 
 
@@ -135,28 +134,6 @@ class WatchedColumns:
             for kind in (is_inside & ~self.is_returned, is_inside & self.is_returned)
         )
         return SentRays(self.looking, expected, occluded, returned, self.width)
-
-
-def count_sent_rays(
-    rays: RaySet,
-    face: FaceRays,
-    low_m: float,
-    count: int,
-    column_m: float,
-    heights_m: tuple[float, float],
-) -> SentRays:
-    """Return the rays that were sent to the columns of a surface between two heights.
-
-    Parameters
-    ----------
-    heights_m : (float, float)
-        From where to where above the floor; `ALL_HEIGHTS_M` of planar scans.
-    rays, face, low_m, count, column_m
-        As of `watch_columns`.
-    """
-    columns = watch_columns(rays, face, low_m, count, column_m)
-    expected = columns.expect_returns(*map(columns.per_deg_below, heights_m))
-    return columns.count_sent(heights_m, expected)
 
 
 def watch_columns(
