@@ -520,8 +520,12 @@ def _stand_plumb(rays: RaySet) -> FloatArray:
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:
     """Return what each scan saw free, and all that was."""
     views = free_space.free_polygons(rays)
+    seen = free_space.union_on_grid(views)
     driven = free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
-    return views, free_space.union_on_grid([*views, *driven])
+    # nearly all of it was seen: only what was not is worth a union
+    shapely.prepare(seen)
+    unseen = driven[~shapely.covers(seen, driven)]
+    return views, free_space.union_on_grid([seen, *unseen]) if len(unseen) else seen
 
 
 def _find_free_floor(
