@@ -54,7 +54,7 @@ class RaySet:
     planar: bool
     is_level: BoolArray
 
-    @cached_property
+    @property
     def ground_z_m(self) -> float:
         """Height that heights are counted from: the floor's, or so far below a plane of scans.
 
@@ -63,7 +63,7 @@ class RaySet:
         """
         if not self.planar:
             return self.floor_z_m
-        return float(np.median(self.xyz_m[:, 2])) - _PLANE_M if len(self.xyz_m) else 0.0
+        return float(self.sensors_m[0, 2]) - _PLANE_M if len(self.sensors_m) else 0.0
 
     @property
     def row_edges_m(self) -> FloatArray:
