@@ -25,6 +25,8 @@ from changed_tests import ALWAYS, list_tests
 ROOT = Path(__file__).resolve().parents[1]
 QUICK = "not workflow and not recordings"
 FULL = "not slurm"
+USUAL = (60, 1)
+"""How many mutants are tried, and the seed that they are drawn with."""
 MOST_S = {QUICK: 900, FULL: 7200}
 """A mutant that runs longer hangs: several times what the tests take on a busy machine."""
 
@@ -224,6 +226,16 @@ def _git(*words: str) -> None:
     subprocess.run(["git", "-C", str(ROOT), *words], check=True)
 
 
+def read_words(words: list[str]) -> tuple[int, int, bool]:
+    """Return the count, the seed and whether all tests are tried, as the command line says."""
+    numbers = [int(word) for word in words if word.isdecimal()]
+    wrong = [word for word in words if word != "--full" and not word.isdecimal()]
+    if wrong or len(numbers) > len(USUAL):
+        sys.exit(f"{' '.join(wrong or words)}: not of [COUNT [SEED]] [--full]")
+    count, seed = [*numbers, *USUAL[len(numbers) :]]
+    return count, seed, "--full" in words
+
+
 if __name__ == "__main__":
-    numbers = [int(word) for word in sys.argv[1:] if not word.startswith("--")]
-    run_trial(*(numbers + [60, 1][len(numbers) :]), full="--full" in sys.argv)
+    count, seed, is_full = read_words(sys.argv[1:])
+    run_trial(count, seed, full=is_full)

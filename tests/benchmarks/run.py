@@ -86,6 +86,7 @@ drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
 as are said, and fails where an overlay raises or areas do not add up.
 """
 
+import inspect
 import os
 import sys
 import tempfile
@@ -315,6 +316,7 @@ APART: dict[str, Callable[..., None]] = {
     "sheets": bench_sheets,
     "ids": bench_ids,
 }
+USAGE = f"for what each takes see the first lines of {Path(__file__).relative_to(ROOT)}"
 BENCHES: dict[str, Callable[[], None]] = {
     "simulation": bench_simulation,
     "registration": bench_registration,
@@ -337,8 +339,20 @@ def run_benches(words: Sequence[str]) -> None:
         known[name]()
 
 
+def run_named(words: Sequence[str]) -> None:
+    """Run what a command names; refuse options, which there are none of, and words too few."""
+    options = [word for word in words if word.startswith("-")]
+    if options:
+        sys.exit(f"{options[0]}: benchmarks have no options; {USAGE}")
+    name, *given = words or [""]
+    if name not in APART:
+        return run_benches(words)
+    try:
+        inspect.signature(APART[name]).bind(*given)
+    except TypeError as err:
+        sys.exit(f"{name}: {err}; {USAGE}")
+    return APART[name](*given)
+
+
 if __name__ == "__main__":
-    if sys.argv[1:] and sys.argv[1] in APART:
-        APART[sys.argv[1]](*sys.argv[2:])
-    else:
-        run_benches(sys.argv[1:])
+    run_named(sys.argv[1:])
