@@ -5,7 +5,6 @@
 ruleorder: gather_chunks > observe_walls
 ruleorder: gather_chunks > build_visibility
 ruleorder: gather_chunks > build_hulls
-ruleorder: gather_wall_chunks > extract_walls
 ruleorder: gather_scan_chunks > register_scans
 
 
@@ -89,15 +88,6 @@ use rule build_hulls as build_hulls_chunk with:
         "benchmarks/{dataset}/build_hulls_{chunk}.tsv"
 
 
-use rule extract_walls as extract_walls_chunk with:
-    output:
-        walls=temp("results/{dataset}/walls/{extractor}_{chunk}.parquet"),
-    log:
-        "logs/{dataset}/extract_walls_{extractor}_{chunk}.log",
-    benchmark:
-        "benchmarks/{dataset}/extract_walls_{extractor}_{chunk}.tsv"
-
-
 def chunks_of_table(wildcards):
     """The tables of a dataset's chunks, in the order of their scans."""
     return chunk_files(wildcards.get("table") or f"walls/{wildcards.extractor}")(
@@ -130,12 +120,24 @@ rule gather_chunks:
         "../../scripts/gather_chunks.py"
 
 
-use rule gather_chunks as gather_wall_chunks with:
-    output:
-        gathered="results/{dataset}/walls/{extractor}.parquet",
-    log:
-        "logs/{dataset}/gather_wall_chunks_{extractor}.log",
-    benchmark:
-        "benchmarks/{dataset}/gather_wall_chunks_{extractor}.tsv"
-    wildcard_constraints:
-        dataset=match_names(CHUNKED),
+if LABORATORY:
+
+    ruleorder: gather_wall_chunks > extract_walls
+
+    use rule extract_walls as extract_walls_chunk with:
+        output:
+            walls=temp("results/{dataset}/walls/{extractor}_{chunk}.parquet"),
+        log:
+            "logs/{dataset}/extract_walls_{extractor}_{chunk}.log",
+        benchmark:
+            "benchmarks/{dataset}/extract_walls_{extractor}_{chunk}.tsv"
+
+    use rule gather_chunks as gather_wall_chunks with:
+        output:
+            gathered="results/{dataset}/walls/{extractor}.parquet",
+        log:
+            "logs/{dataset}/gather_wall_chunks_{extractor}.log",
+        benchmark:
+            "benchmarks/{dataset}/gather_wall_chunks_{extractor}.tsv"
+        wildcard_constraints:
+            dataset=match_names(CHUNKED),

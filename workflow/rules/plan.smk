@@ -29,37 +29,39 @@ rule assemble_plan:
         "../../scripts/assemble_plan.py"
 
 
-rule correct_plan:
-    """Carry out what a person says of the plan in the dataset's folder."""
-    input:
-        corrections=corrections,
-        faces="results/{dataset}/plan/faces.parquet",
-        walls="results/{dataset}/plan/walls.parquet",
-        openings="results/{dataset}/plan/openings.parquet",
-        rooms="results/{dataset}/plan/rooms.parquet",
-        evidence="results/{dataset}/plan/evidence.parquet",
-        free="results/{dataset}/plan/free.parquet",
-        furniture="results/{dataset}/plan/furniture.parquet",
-    output:
-        faces="results/{dataset}/plan/corrected/faces.parquet",
-        walls="results/{dataset}/plan/corrected/walls.parquet",
-        openings="results/{dataset}/plan/corrected/openings.parquet",
-        rooms="results/{dataset}/plan/corrected/rooms.parquet",
-        evidence="results/{dataset}/plan/corrected/evidence.parquet",
-        free="results/{dataset}/plan/corrected/free.parquet",
-        furniture="results/{dataset}/plan/corrected/furniture.parquet",
-    log:
-        "logs/{dataset}/correct_plan.log",
-    benchmark:
-        "benchmarks/{dataset}/correct_plan.tsv"
-    threads: 1
-    resources:
-        mem_mb=1000,
-        runtime=5,
-    params:
-        code=code_of("correct_plan"),
-    script:
-        "../../scripts/correct_plan.py"
+if any(found.corrections for found in DATASETS.values()):
+
+    rule correct_plan:
+        """Carry out what a person says of the plan in the dataset's folder."""
+        input:
+            corrections=corrections,
+            faces="results/{dataset}/plan/faces.parquet",
+            walls="results/{dataset}/plan/walls.parquet",
+            openings="results/{dataset}/plan/openings.parquet",
+            rooms="results/{dataset}/plan/rooms.parquet",
+            evidence="results/{dataset}/plan/evidence.parquet",
+            free="results/{dataset}/plan/free.parquet",
+            furniture="results/{dataset}/plan/furniture.parquet",
+        output:
+            faces="results/{dataset}/plan/corrected/faces.parquet",
+            walls="results/{dataset}/plan/corrected/walls.parquet",
+            openings="results/{dataset}/plan/corrected/openings.parquet",
+            rooms="results/{dataset}/plan/corrected/rooms.parquet",
+            evidence="results/{dataset}/plan/corrected/evidence.parquet",
+            free="results/{dataset}/plan/corrected/free.parquet",
+            furniture="results/{dataset}/plan/corrected/furniture.parquet",
+        log:
+            "logs/{dataset}/correct_plan.log",
+        benchmark:
+            "benchmarks/{dataset}/correct_plan.tsv"
+        threads: 1
+        resources:
+            mem_mb=1000,
+            runtime=5,
+        params:
+            code=code_of("correct_plan"),
+        script:
+            "../../scripts/correct_plan.py"
 
 
 rule validate_plan:

@@ -1,23 +1,26 @@
-rule extract_walls:
-    """Find the wall segments that each scan shows."""
-    input:
-        scans="results/{dataset}/scans.parquet",
-        registration="results/{dataset}/registration.parquet",
-    output:
-        walls="results/{dataset}/walls/{extractor}.parquet",
-    log:
-        "logs/{dataset}/extract_walls_{extractor}.log",
-    benchmark:
-        "benchmarks/{dataset}/extract_walls_{extractor}.tsv"
-    threads: 2
-    resources:
-        mem_mb=grown(mem_mb=2000),
-        runtime=grown(runtime=60),
-    params:
-        code=code_of("extract_walls"),
-        settings=extractor_settings,
-    script:
-        "../../scripts/extract_walls.py"
+# a plan is made of the walls of chosen scans; extractors are compared by those of all
+if LABORATORY:
+
+    rule extract_walls:
+        """Find the wall segments that each scan shows."""
+        input:
+            scans="results/{dataset}/scans.parquet",
+            registration="results/{dataset}/registration.parquet",
+        output:
+            walls="results/{dataset}/walls/{extractor}.parquet",
+        log:
+            "logs/{dataset}/extract_walls_{extractor}.log",
+        benchmark:
+            "benchmarks/{dataset}/extract_walls_{extractor}.tsv"
+        threads: 2
+        resources:
+            mem_mb=grown(mem_mb=2000),
+            runtime=grown(runtime=60),
+        params:
+            code=code_of("extract_walls"),
+            settings=extractor_settings,
+        script:
+            "../../scripts/extract_walls.py"
 
 
 rule extract_chosen_walls:

@@ -60,6 +60,8 @@ _COMPARED_WITH_TRUTH = (
 )
 COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH)
 """Results of a dataset that the comparison alone has stages for."""
+OF_ALL_SCANS = "walls"
+"""The folder of what extractors find in all scans, which the comparison alone asks for."""
 CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
 """Suffixes of what is made of two surveys of a floor."""
 DESIGN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "txt")
@@ -314,7 +316,7 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     """
     others = [method for method in methods if method != found.settings["plan"]["method"]]
     files = [f"selection/{method}.parquet" for method in others]
-    files += [f"walls/{extractor}.parquet" for extractor in extractors]
+    files += [f"{OF_ALL_SCANS}/{extractor}.parquet" for extractor in extractors]
     files += ["hulls.parquet", *_COMPARED]
     if found.truth:
         files += _COMPARED_WITH_TRUTH

@@ -68,7 +68,9 @@ def _is_of_laboratory(word: str) -> bool:
     folder, *rest = PurePath(word).parts or ("",)
     if folder != "results" or len(rest) < 2:
         return word in dataset_files.OF_LABORATORY
-    return rest[0] == dataset_files.RESERVED or "/".join(rest[1:]) in dataset.COMPARISON
+    name, *file = rest
+    is_compared = file[0] == dataset.OF_ALL_SCANS or "/".join(file) in dataset.COMPARISON
+    return name == dataset_files.RESERVED or is_compared
 
 
 def _as_config(key: str, value: str) -> str:
