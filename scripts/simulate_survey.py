@@ -18,33 +18,33 @@ def simulate_survey(
     true_trajectory: FilePath,
     *,
     seed: int,
-    site: Settings,
-    mount: Settings,
-    sensor: Settings,
-    errors: Settings,
-    drive: Settings,
     odometry: Settings,
     localiser: Settings,
-    people: Settings,
     start_ns: int = survey_bag.EPOCH_NS,
     threads: int = 1,
+    **scene: Settings,
 ) -> None:
     """Write a drive's recording (.bag, .db3 or .mcap), the floor's truth, and the true poses.
 
     The poses at the scans' stamps, and those of the whole way; the drive begins at `start_ns`.
+
+    Parameters
+    ----------
+    odometry, localiser : dict
+        Settings of `survey_setup.survey_belief`.
+    **scene
+        `site`, `mount`, `sensor`, `errors`, `drive` and `people`: those of
+        `survey_setup.prepare_site` and `survey_setup.prepare_survey`.
     """
     data = Path(building).read_bytes()
-    place = survey_setup.prepare_site(
-        *(data, Path(building), mount), seed=seed, planar=sensor["model"] == "laser", **site
-    )
+    planar = scene["sensor"]["model"] == "laser"
+    place = survey_setup.prepare_site(data, Path(building), scene, seed=seed, planar=planar)
     for note in place.notes:
         log.log_line(f"simulate_survey: {note}")
-    survey = survey_setup.prepare_survey(
-        place, seed=seed, mount=mount, sensor=sensor, errors=errors, drive=drive, people=people
-    )
+    survey = survey_setup.prepare_survey(place, scene, seed=seed)
     errors_of_poses = {key: value for key, value in localiser.items() if key != "present"}
     belief = survey_setup.survey_belief(
-        survey, odometry, sway_known=drive["sway_known"], **errors_of_poses
+        survey, odometry, sway_known=scene["drive"]["sway_known"], **errors_of_poses
     )
     scans = log.report_progress(
         sweeps.simulate_scans(survey, threads=threads), "simulate_survey", total=len(survey.t_ns)

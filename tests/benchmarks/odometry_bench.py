@@ -112,9 +112,9 @@ def _sorted_copy(reference: Path, copy: Path) -> Path:
 def _plan_way(building: Path, settings: Settings, route: str, metres: float) -> FloatArray:
     """Return a way there and back again, cut at a length."""
     simulated = settings["simulate"]
-    site = simulated["site"] | {"route": route}
+    chosen = simulated | {"site": simulated["site"] | {"route": route}}
     place = survey_setup.prepare_site(
-        building.read_bytes(), building, simulated["mount"], seed=simulated["seed"], **site
+        building.read_bytes(), building, chosen, seed=simulated["seed"]
     )
     once_m = np.asarray(place.waypoints_m)
     again_m = once_m if np.allclose(once_m[0], once_m[-1]) else once_m[::-1]

@@ -77,9 +77,7 @@ def _visit_again(
         source = recordings / "buildings" / source if source.suffix else _drawing(project, source)
     simulated = settings["simulate"] | {"seed": int(seed), "localiser": _localiser(settings)}
     simulated["site"] = simulated["site"] | given.get("site", {})
-    place = survey_setup.prepare_site(
-        source.read_bytes(), source, simulated["mount"], seed=int(seed), **simulated["site"]
-    )
+    place = survey_setup.prepare_site(source.read_bytes(), source, simulated, seed=int(seed))
     way_m = _cut_way(np.asarray(place.waypoints_m), _DRIVEN)
     first = folder / "surveys" / f"{name}_first"
     n_first = _drive(source, first, "first", simulated, way_m)

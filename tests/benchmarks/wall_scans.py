@@ -107,12 +107,9 @@ def prepare_unswept(
     chosen["sensor"] |= {"n_azimuth": N_AZIMUTH, "sweep": False, "rate_hz": rate_hz}
     chosen["drive"] |= drive
     chosen["site"] |= site
-    rig = {key: chosen[key] for key in ("mount", "sensor", "errors", "drive", "people")}
     path = Path(building)
-    found = survey_setup.prepare_site(
-        path.read_bytes(), path, chosen["mount"], seed=seed, **chosen["site"]
-    )
-    return found, survey_setup.prepare_survey(found, seed=seed, **rig)
+    found = survey_setup.prepare_site(path.read_bytes(), path, chosen, seed=seed)
+    return found, survey_setup.prepare_survey(found, chosen, seed=seed)
 
 
 def measure_quality(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scanplan.geometry import se3
-from scanplan.lab.simulation import localisation, rover
+from scanplan.lab.simulation import localisation, odometry, rover
 
 # 2 m east at 0.5 m/s, a quarter turn left at 45 deg/s, 1 m north
 ELL = rover.plan_drive([[0, 0], [2, 0], [2, 1]], speed_m_s=0.5, turn_rate_deg_s=45.0)
@@ -18,26 +18,32 @@ SURE = {
     "drift_time_s": 20.0,
     "jumps_per_min": 0.0,
     "max_jump_m": 0.3,
-    "seed": 1,
 }
-WHEELS = {
-    "scale_share": 0.01,
-    "drift_deg_per_m": 0.0,
-    "random_m": 0.0,
-    "random_deg": 0.0,
-    "slips_per_m": 0.0,
-    "max_slip_m": 0.2,
-    "max_slip_deg": 5.0,
-}
+WHEELS = odometry.WheelErrors(
+    scale_share=0.01,
+    drift_deg_per_m=0.0,
+    random_m=0.0,
+    random_deg=0.0,
+    slips_per_m=0.0,
+    max_slip_m=0.2,
+    max_slip_deg=5.0,
+)
 CONVERGED = {"start_off_m": 0.0, "start_off_deg": 0.0, "converge_m": 5.0}
 KNOWING = {"start": CONVERGED, "slam": None, "sway": None}
 SPEAKING = {"update_distance_m": 0.25, "update_angle_deg": 11.5, "transform_tolerance_s": 0.1}
 
 
 def believe(**changes):
-    return localisation.simulate_belief(
-        TICKS, TRUE, odometry=WHEELS, **{**SURE, **SPEAKING, **KNOWING, **changes}
-    )
+    known = {**SURE, **SPEAKING, **KNOWING, **changes}
+    errors = localisation.LocaliserErrors(**{key: known.pop(key) for key in SURE})
+    sway, seed = known.pop("sway"), known.pop("seed", 1)
+    localiser = localisation.Localiser(errors=errors, **known)
+    return localisation.simulate_belief(TICKS, TRUE, localiser, WHEELS, sway=sway, seed=seed)
+
+
+def draw(t_s, seed=1, **changes):
+    errors = localisation.LocaliserErrors(**{**SURE, **changes})
+    return localisation.draw_pose_errors(t_s, errors, seed=seed)
 
 
 def test_localiser_speaks_first_last_and_after_enough_motion():
@@ -58,9 +64,7 @@ def test_a_sure_localiser_tells_the_truth():
 
 
 def test_white_noise_has_its_deviation_and_no_memory():
-    error = localisation.draw_pose_errors(
-        np.arange(20_000.0), **{**SURE, "noise_m": 0.05, "noise_deg": 1.0}
-    )
+    error = draw(np.arange(20_000.0), noise_m=0.05, noise_deg=1.0)
     np.testing.assert_allclose(error.std(axis=0), [0.05, 0.05, np.radians(1.0)], rtol=0.03)
     assert np.abs(_correlation(error, 1)).max() < 0.03
 
@@ -68,7 +72,7 @@ def test_white_noise_has_its_deviation_and_no_memory():
 @pytest.mark.parametrize("gap_s", [1.0, 5.0])
 def test_drift_is_an_ornstein_uhlenbeck_process_at_any_spacing(gap_s):
     t_s = gap_s * np.arange(200_000.0)
-    error = localisation.draw_pose_errors(t_s, **{**SURE, "drift_m": 0.04, "drift_deg": 0.5})
+    error = draw(t_s, drift_m=0.04, drift_deg=0.5)
     np.testing.assert_allclose(error.std(axis=0), [0.04, 0.04, np.radians(0.5)], rtol=0.05)
     for steps in (1, 4):
         np.testing.assert_allclose(
@@ -77,10 +81,7 @@ def test_drift_is_an_ornstein_uhlenbeck_process_at_any_spacing(gap_s):
 
 
 def test_drift_starts_as_large_as_it_stays():
-    first = [
-        localisation.draw_pose_errors([0.0, 1.0], **{**SURE, "drift_m": 0.04, "seed": seed})[0, 0]
-        for seed in range(400)
-    ]
+    first = [draw([0.0, 1.0], drift_m=0.04, seed=seed)[0, 0] for seed in range(400)]
     assert np.std(first) == pytest.approx(0.04, rel=0.15)
 
 
@@ -99,7 +100,7 @@ def test_a_jump_decays_with_the_drifts_time(monkeypatch):
     monkeypatch.setattr(
         localisation, "draw_jumps", lambda gap_s, *_: np.eye(3)[[1, 0, 1]] * [[0], [0.3], [0]]
     )
-    error = localisation.draw_pose_errors([0.0, 1.0, 11.0], **SURE)
+    error = draw([0.0, 1.0, 11.0])
     np.testing.assert_allclose(error[:, 0], [0, 0.3, 0.3 * np.exp(-0.5)], atol=1e-12)
 
 

@@ -118,16 +118,10 @@ def test_a_leaf_stands_in_no_cupboard():
 
 def test_doors_of_a_model_get_leaves_of_their_own_size():
     def prepare(**values):
-        settings = {"seed": 3, "route": "rooms", "waypoints_m": None, "start_m": None}
-        mount = {"height_m": 0.4, "forward_m": 0.0}
-        return survey_setup.prepare_site(
-            *(ifc_making.model(), Path("made.ifc"), mount),
-            clearance_m=0.25,
-            chairs=0,
-            doors_ajar=0.0,
-            **settings,
-            **values,
-        )
+        site = {"route": "rooms", "waypoints_m": None, "start_m": None, "clearance_m": 0.25}
+        site |= {"chairs": 0, "doors_ajar": 0.0, **values}
+        settings = {"site": site, "mount": {"height_m": 0.4, "forward_m": 0.0}}
+        return survey_setup.prepare_site(ifc_making.model(), Path("made.ifc"), settings, seed=3)
 
     without, hung = prepare(), prepare(leaves=1.0)
     ((line, values),) = leaves_of(hung)

@@ -10,7 +10,7 @@ from scanplan.lab.simulation import sensor_errors, sensor_models
 from scanplan.lab.simulation.raycast import RayHits
 
 EXACT = sensor_errors.SensorErrors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
-BIASED = {**EXACT_SETTINGS, "bias_m": 0.005}
+BIASED = sensor_errors.StatedErrors(**{**EXACT_SETTINGS, "bias_m": 0.005})
 
 
 def test_biases_belong_to_the_beam_and_to_the_specimen():
@@ -18,11 +18,11 @@ def test_biases_belong_to_the_beam_and_to_the_specimen():
         8, rate_hz=10.0, sweep=True, min_range_m=0.3, max_range_m=100.0
     )
     first, again, other = (
-        sensor_errors.draw_sensor_errors(sensor, **BIASED, seed=s).bias_m for s in (1, 1, 2)
+        sensor_errors.draw_sensor_errors(sensor, BIASED, seed=s).bias_m for s in (1, 1, 2)
     )
     np.testing.assert_array_equal(first, again)
     assert not np.array_equal(first, other) and len(np.unique(first)) == 16
-    many = [sensor_errors.draw_sensor_errors(sensor, **BIASED, seed=s).bias_m for s in range(200)]
+    many = [sensor_errors.draw_sensor_errors(sensor, BIASED, seed=s).bias_m for s in range(200)]
     assert np.std(many) == pytest.approx(0.005, rel=0.05)
 
 

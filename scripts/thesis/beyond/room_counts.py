@@ -94,13 +94,10 @@ def prepare_floor(
     site = survey_setup.prepare_site(
         generated_floor.draw_floor(n_rooms, seed),
         Path("generated.geojson"),
-        simulation["mount"],
+        simulation,
         seed=seed,
-        **simulation["site"],
     )
-    parts = ("mount", "sensor", "errors", "drive", "people")
-    own = {name: simulation[name] for name in parts}
-    return site, survey_setup.prepare_survey(site, seed=seed, **own)
+    return site, survey_setup.prepare_survey(site, simulation, seed=seed)
 
 
 def look_at_scans(

@@ -1,6 +1,6 @@
 """What the rover estimates of its own pose: a localiser's poses, and how odometry is corrected."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from scanplan.geometry import se3
 from scanplan.lab.random_streams import RandomStream, open_stream
 from scanplan.lab.simulation import rover
-from scanplan.lab.simulation.odometry import integrate_odometry
+from scanplan.lab.simulation.odometry import WheelErrors, integrate_odometry
 from scanplan.lab.simulation.slam import track_poses
 from scanplan.types import FloatArray, IntArray, Settings
 
@@ -50,19 +50,65 @@ class Belief:
     ahead_ns: int
 
 
+@dataclass(frozen=True)
+class LocaliserErrors:
+    """What a localiser that knows the map errs by.
+
+    Attributes
+    ----------
+    noise_m, noise_deg : float
+        Standard deviation of the white part: of x and of y, and of the heading.
+    drift_m, drift_deg : float
+        Stationary standard deviation of the drift.
+    drift_time_s : float
+        Its correlation time.
+    jumps_per_min : float
+        Expected number of jumps a minute.
+    max_jump_m : float
+        A jump's length is even between 0 and this, its direction any.
+    """
+
+    noise_m: float
+    noise_deg: float
+    drift_m: float
+    drift_deg: float
+    drift_time_s: float
+    jumps_per_min: float
+    max_jump_m: float
+
+
+@dataclass(frozen=True)
+class Localiser:
+    """How a localiser speaks, and what it errs by.
+
+    Attributes
+    ----------
+    update_distance_m, update_angle_deg : float
+        Motion since the last update that brings the next.
+    transform_tolerance_s : float
+        AMCL's parameter of that name.
+    start : dict
+        Settings of `draw_start`.
+    slam : dict or None
+        Settings of `slam.track_poses`; None where the localiser knows the map, as AMCL does.
+    """
+
+    update_distance_m: float
+    update_angle_deg: float
+    transform_tolerance_s: float
+    errors: LocaliserErrors
+    start: Settings
+    slam: Settings | None
+
+
 def simulate_belief(
     t_ns: IntArray,
     world_from_base: FloatArray,
+    localiser: Localiser,
+    wheels: WheelErrors,
     *,
-    update_distance_m: float,
-    update_angle_deg: float,
-    transform_tolerance_s: float,
-    odometry: Settings,
-    start: Settings,
-    slam: Settings | None,
     sway: FloatArray | None,
     seed: int,
-    **error_settings: float,
 ) -> Belief:
     """Return what wheels and localiser estimate over a drive.
 
@@ -71,46 +117,33 @@ def simulate_belief(
     t_ns : (n,) int64
     world_from_base : (n, 4, 4) float64
         True planar poses at these ticks.
-    update_distance_m, update_angle_deg : float
-        Motion since the localiser's last update that brings the next.
-    transform_tolerance_s : float
-        AMCL's parameter of that name.
-    odometry : dict
-        Settings of `odometry.integrate_odometry`.
-    start : dict
-        Settings of `draw_start`.
-    slam : dict or None
-        Settings of `slam.track_poses`; None where the localiser knows the map, as AMCL does.
     sway : (n, 4, 4) float64 or None
         What both know of level_from_base at the ticks: 6-DoF, as odometry of a hand-held device
         by its inertial unit, and the localiser then speaks at every tick. None where they are
         planar, and know nothing of it.
-    **error_settings
-        As for `draw_pose_errors`.
-
-    Returns
-    -------
-    Belief
     """
+    errors = localiser.errors
     update = np.arange(len(t_ns))
     if sway is None:
         update = choose_updates(
-            world_from_base, distance_m=update_distance_m, angle_rad=np.radians(update_angle_deg)
+            world_from_base,
+            distance_m=localiser.update_distance_m,
+            angle_rad=np.radians(localiser.update_angle_deg),
         )
     tracked = world_from_base[update]
-    if slam is not None:
-        tracked = track_poses(tracked, **slam, seed=seed)
-        error_settings |= {"drift_m": 0.0, "drift_deg": 0.0, "jumps_per_min": 0.0}
-    errors = draw_pose_errors(t_ns[update] / 1e9, **error_settings, seed=seed)
-    off = draw_start(world_from_base[update], **start, seed=seed)
-    map_from_base = add_pose_errors(tracked, errors + off)
-    odom_from_base = integrate_odometry(world_from_base, **odometry, seed=seed)
+    if localiser.slam is not None:
+        tracked = track_poses(tracked, **localiser.slam, seed=seed)
+        errors = replace(errors, drift_m=0.0, drift_deg=0.0, jumps_per_min=0.0)
+    drawn = draw_pose_errors(t_ns[update] / 1e9, errors, seed=seed)
+    off = draw_start(world_from_base[update], **localiser.start, seed=seed)
+    map_from_base = add_pose_errors(tracked, drawn + off)
+    odom_from_base = integrate_odometry(world_from_base, wheels, seed=seed)
     if sway is not None:
         map_from_base = map_from_base @ sway[update]
         odom_from_base = odom_from_base @ sway
     transform = np.arange(0, len(t_ns), _TICKS_PER_TRANSFORM)
-    deviation_m = np.hypot(error_settings["noise_m"], error_settings["drift_m"])
-    deviation_deg = np.hypot(error_settings["noise_deg"], error_settings["drift_deg"])
+    deviation_m = np.hypot(errors.noise_m, errors.drift_m)
+    deviation_deg = np.hypot(errors.noise_deg, errors.drift_deg)
     return Belief(
         t_ns=t_ns,
         odom_from_base=odom_from_base,
@@ -121,7 +154,7 @@ def simulate_belief(
         deviation_rad=np.hypot(np.radians(deviation_deg), off[:, 2]),
         transform=transform,
         map_from_odom=correction_at(update, map_from_base, odom_from_base, transform),
-        ahead_ns=round(transform_tolerance_s * 1e9),
+        ahead_ns=round(localiser.transform_tolerance_s * 1e9),
     )
 
 
@@ -190,18 +223,7 @@ def choose_updates(world_from_base: FloatArray, *, distance_m: float, angle_rad:
     return np.array(ticks)
 
 
-def draw_pose_errors(
-    t_s: ArrayLike,
-    *,
-    noise_m: float,
-    noise_deg: float,
-    drift_m: float,
-    drift_deg: float,
-    drift_time_s: float,
-    jumps_per_min: float,
-    max_jump_m: float,
-    seed: int,
-) -> FloatArray:
+def draw_pose_errors(t_s: ArrayLike, errors: LocaliserErrors, *, seed: int) -> FloatArray:
     """Return a particle filter's errors: white noise, a slow drift, and jumps that decay with it.
 
     The drift of x, y and heading is an Ornstein-Uhlenbeck process each, sampled exactly. ASSUME all
@@ -212,16 +234,6 @@ def draw_pose_errors(
     ----------
     t_s : (m,) float64, increasing
         Moments of the updates.
-    noise_m, noise_deg : float
-        Standard deviation of the white part: of x and of y, and of the heading.
-    drift_m, drift_deg : float
-        Stationary standard deviation of the drift.
-    drift_time_s : float
-        Its correlation time.
-    jumps_per_min : float
-        Expected number of jumps a minute.
-    max_jump_m : float
-        A jump's length is even between 0 and this, its direction any.
 
     Returns
     -------
@@ -232,15 +244,15 @@ def draw_pose_errors(
     white = open_stream(seed, RandomStream.LOCALISER_NOISE)
     drift = open_stream(seed, RandomStream.LOCALISER_DRIFT)
     jump = open_stream(seed, RandomStream.LOCALISER_JUMPS)
-    drift_scale = np.array([drift_m, drift_m, np.radians(drift_deg)])
-    jumps = draw_jumps(np.diff(t_s, prepend=t_s[0]), jumps_per_min, max_jump_m, jump)
-    decay = np.exp(-np.diff(t_s) / drift_time_s)
+    drift_scale = np.array([errors.drift_m, errors.drift_m, np.radians(errors.drift_deg)])
+    jumps = draw_jumps(np.diff(t_s, prepend=t_s[0]), errors.jumps_per_min, errors.max_jump_m, jump)
+    decay = np.exp(-np.diff(t_s) / errors.drift_time_s)
     state = np.empty((len(t_s), 3))
     state[0] = drift_scale * drift.standard_normal(3)
     push = drift_scale * drift.standard_normal((len(decay), 3)) * np.sqrt(1 - decay**2)[:, None]
     for i, share in enumerate(decay, 1):
         state[i] = share * state[i - 1] + push[i - 1] + jumps[i]
-    noise_scale = np.array([noise_m, noise_m, np.radians(noise_deg)])
+    noise_scale = np.array([errors.noise_m, errors.noise_m, np.radians(errors.noise_deg)])
     return state + noise_scale * white.standard_normal((len(t_s), 3))
 
 

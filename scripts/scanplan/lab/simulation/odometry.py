@@ -1,5 +1,7 @@
 """Wheel odometry: what it makes of a motion that it measures with errors."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from scanplan.geometry import se3
@@ -10,17 +12,33 @@ from scanplan.types import FloatArray
 _SLIP_TICKS = 25  # ASSUME wheels slip for half a second
 
 
+@dataclass(frozen=True)
+class WheelErrors:
+    """What wheels err by.
+
+    Attributes
+    ----------
+    scale_share : float
+        Standard deviation of the scales of turns and of steps, which are drawn once.
+    drift_deg_per_m : float
+        What the heading turns by, a metre of way: to the left.
+    random_m, random_deg : float
+        Standard deviation of the length and of the heading after a metre of way.
+    slips_per_m, max_slip_m, max_slip_deg : float
+        As for `draw_slips`.
+    """
+
+    scale_share: float
+    drift_deg_per_m: float
+    random_m: float
+    random_deg: float
+    slips_per_m: float
+    max_slip_m: float
+    max_slip_deg: float
+
+
 def integrate_odometry(
-    world_from_base: FloatArray,
-    *,
-    scale_share: float,
-    drift_deg_per_m: float,
-    random_m: float,
-    random_deg: float,
-    slips_per_m: float,
-    max_slip_m: float,
-    max_slip_deg: float,
-    seed: int,
+    world_from_base: FloatArray, errors: WheelErrors, *, seed: int
 ) -> FloatArray:
     """Return odom_from_base (n, 4, 4): the motion summed up from its start with errors.
 
@@ -31,25 +49,19 @@ def integrate_odometry(
     ----------
     world_from_base : (n, 4, 4) float64
         True planar poses at the rover's ticks.
-    scale_share : float
-        Standard deviation of the scales of turns and of steps, which are drawn once.
-    drift_deg_per_m : float
-        What the heading turns by, a metre of way: to the left.
-    random_m, random_deg : float
-        Standard deviation of the length and of the heading after a metre of way.
-    slips_per_m, max_slip_m, max_slip_deg : float
-        As for `draw_slips`.
     """
     generator = open_stream(seed, RandomStream.ODOMETRY)
-    turn_scale, step_scale = 1 + scale_share * generator.standard_normal(2)
+    turn_scale, step_scale = 1 + errors.scale_share * generator.standard_normal(2)
     yaw_rad = np.unwrap(se3.pose_yaw_rad(world_from_base))
     step_m = np.diff(world_from_base[:, :2, 3], axis=0)
     step_length_m = np.hypot(*step_m.T)
     way_m = np.concatenate([[0], np.cumsum(step_length_m)])
-    drift_rad = np.radians(drift_deg_per_m) * way_m
+    drift_rad = np.radians(errors.drift_deg_per_m) * way_m
     odometry_yaw_rad = turn_scale * (yaw_rad - yaw_rad[0]) + drift_rad
-    extra_m, extra_rad = _draw_walk(step_length_m, random_m, random_deg, seed)
-    slip_m, slip_rad = draw_slips(step_length_m, slips_per_m, max_slip_m, max_slip_deg, seed)
+    extra_m, extra_rad = _draw_walk(step_length_m, errors.random_m, errors.random_deg, seed)
+    slip_m, slip_rad = draw_slips(
+        step_length_m, errors.slips_per_m, errors.max_slip_m, errors.max_slip_deg, seed
+    )
     extra_m, extra_rad = extra_m + slip_m, extra_rad + slip_rad
     if extra_rad.any():
         odometry_yaw_rad[1:] += np.cumsum(extra_rad)

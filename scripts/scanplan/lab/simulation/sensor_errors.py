@@ -62,64 +62,65 @@ class SensorErrors:
     stray_share: float = 0.0
 
 
-def draw_sensor_errors(
-    sensor: Sensor,
-    *,
-    noise_m: float,
-    bias_m: float,
-    quantum_m: float,
-    grazing_from_deg: float,
-    glass_pass: float,
-    glass_drop: float,
-    glass_return_deg: float,
-    glass_mirror: float,
-    polished_from_deg: float,
-    bias_intensity_m: float,
-    bias_incidence_m: float,
-    mixed_deg: float,
-    stray_share: float,
-    seed: int,
-) -> SensorErrors:
-    """Return the errors of one specimen of a sensor: its biases are drawn once, by the seed.
+@dataclass(frozen=True)
+class StatedErrors:
+    """The errors of a kind of sensor, as the section `simulate.errors` of the settings states them.
 
-    Parameters
+    Fields as in `SensorErrors`, but for angles in degrees and
+
+    Attributes
     ----------
     bias_m : float
         Standard deviation of the beams' biases.
-    grazing_from_deg, glass_return_deg, polished_from_deg, mixed_deg : float
-        The angles of `SensorErrors`.
-    noise_m, quantum_m, glass_pass, glass_drop, glass_mirror
-        As in `SensorErrors`.
-    bias_intensity_m, bias_incidence_m, stray_share
-        As in `SensorErrors`.
 
     Raises
     ------
     StageError
         If the probabilities of glass add up to more than 1.
     """
-    # shares such as .28, .68 and .04 add up to 1 and a rounding error
-    if glass_pass + glass_drop + glass_mirror > 1 + ROUNDING:
-        raise StageError(
-            f"simulate.errors: glass_pass {glass_pass:g}, glass_drop {glass_drop:g} and"
-            f" glass_mirror {glass_mirror:g} add up to more than 1; lower one"
-        )
+
+    noise_m: float
+    bias_m: float
+    quantum_m: float
+    grazing_from_deg: float
+    glass_pass: float
+    glass_drop: float
+    glass_return_deg: float
+    glass_mirror: float
+    polished_from_deg: float
+    bias_intensity_m: float
+    bias_incidence_m: float
+    mixed_deg: float
+    stray_share: float
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be."""
+        # shares such as .28, .68 and .04 add up to 1 and a rounding error
+        if self.glass_pass + self.glass_drop + self.glass_mirror > 1 + ROUNDING:
+            raise StageError(
+                f"simulate.errors: glass_pass {self.glass_pass:g}, glass_drop {self.glass_drop:g}"
+                f" and glass_mirror {self.glass_mirror:g} add up to more than 1; lower one"
+            )
+
+
+def draw_sensor_errors(sensor: Sensor, stated: StatedErrors, *, seed: int) -> SensorErrors:
+    """Return the errors of one specimen of a sensor: its biases are drawn once, by the seed."""
     generator = open_stream(seed, RandomStream.BEAM_BIAS)
-    of_beam = generator.standard_normal(len(sensor.ring)) * bias_m
+    of_beam = generator.standard_normal(len(sensor.ring)) * stated.bias_m
     return SensorErrors(
-        noise_m=noise_m,
+        noise_m=stated.noise_m,
         bias_m=of_beam[sensor.ring].astype(np.float32),
-        quantum_m=quantum_m,
-        grazing_from_rad=float(np.radians(grazing_from_deg)),
-        glass_pass=glass_pass,
-        glass_drop=glass_drop,
-        glass_mirror=glass_mirror,
-        glass_return_rad=float(np.radians(glass_return_deg)),
-        polished_from_rad=float(np.radians(polished_from_deg)),
-        bias_intensity_m=bias_intensity_m,
-        bias_incidence_m=bias_incidence_m,
-        mixed_rad=float(np.radians(mixed_deg)),
-        stray_share=stray_share,
+        quantum_m=stated.quantum_m,
+        grazing_from_rad=float(np.radians(stated.grazing_from_deg)),
+        glass_pass=stated.glass_pass,
+        glass_drop=stated.glass_drop,
+        glass_mirror=stated.glass_mirror,
+        glass_return_rad=float(np.radians(stated.glass_return_deg)),
+        polished_from_rad=float(np.radians(stated.polished_from_deg)),
+        bias_intensity_m=stated.bias_intensity_m,
+        bias_incidence_m=stated.bias_incidence_m,
+        mixed_rad=float(np.radians(stated.mixed_deg)),
+        stray_share=stated.stray_share,
     )
 
 

@@ -20,27 +20,19 @@ from scanplan.lab.simulation import (
     sensor_models,
     sweeps,
 )
+from scanplan.lab.simulation.odometry import WheelErrors
 from scanplan.lab.simulation.survey_truth import mark_visible
 from scanplan.types import FloatArray, IntArray, Settings
 
 _START = ("start_off_m", "start_off_deg", "converge_m")
 _SLAM = ("walk_m", "walk_deg", "loop_late_m")
+_SPEAKING = ("update_distance_m", "update_angle_deg", "transform_tolerance_s")
+_ROUTE = ("route", "waypoints_m", "start_m", "clearance_m")
+_CLUTTER = ("chairs", "doors_ajar")
 
 
 def prepare_site(
-    data: bytes,
-    source: Path,
-    mount: Settings,
-    *,
-    seed: int,
-    route: str,
-    waypoints_m: Any,
-    start_m: Any,
-    clearance_m: float,
-    chairs: int,
-    doors_ajar: float,
-    leaves: float = 0.0,
-    **reading: Any,
+    data: bytes, source: Path, settings: Settings, *, seed: int, planar: bool = False
 ) -> building.Building:
     """Read a building and find the rover's way through it.
 
@@ -48,56 +40,45 @@ def prepare_site(
     ----------
     source : pathlib.Path
         The file that `data` is from.
-    mount : dict
-        Settings of `rover.mount_sensor`.
-    seed, route, waypoints_m, start_m, clearance_m
-        See `building_route.plan_building_route`.
-    chairs, doors_ajar
-        See `clutter.add_clutter`.
-    leaves
-        Share of doors, see `random_leaves.hang_leaves`.
-    **reading
-        Settings of `building.load_building`; `planar` for a 2-D scanner.
+    settings : dict
+        `mount`, see `rover.mount_sensor`, and `site`: settings of `building.load_building`,
+        `building_route.plan_building_route`, `clutter.add_clutter`, and `leaves`, the share of
+        doors for `random_leaves.hang_leaves`.
+    planar : bool
+        Whether the sensor is a 2-D scanner.
 
     Returns
     -------
     building.Building
         With a way.
     """
-    site = building.load_building(data, source, slice_height_m=mount["height_m"], **reading)
-    if leaves > 0:
-        given_m = site.waypoints_m if waypoints_m is None else waypoints_m
-        site = random_leaves.hang_leaves(
-            site,
-            share=leaves,
+    mount, site = settings["mount"], settings["site"]
+    way = {key: site[key] for key in _ROUTE}
+    things = {key: site[key] for key in _CLUTTER}
+    others = (*_ROUTE, *_CLUTTER, "leaves")
+    reading = {key: value for key, value in site.items() if key not in others}
+    found = building.load_building(
+        data, source, slice_height_m=mount["height_m"], planar=planar, **reading
+    )
+    if site.get("leaves", 0.0) > 0:
+        given_m = found.waypoints_m if way["waypoints_m"] is None else way["waypoints_m"]
+        found = random_leaves.hang_leaves(
+            found,
+            share=site["leaves"],
             seed=seed,
             slice_height_m=mount["height_m"],
-            planar=reading.get("planar", False),
-            waypoints_m=given_m if route == "given" else None,
+            planar=planar,
+            waypoints_m=given_m if way["route"] == "given" else None,
             clearance_m=max(building_route.ROVER_RADIUS_M, abs(mount["forward_m"])),
         )
     driven = building_route.plan_building_route(
-        site,
-        source,
-        route=route,
-        waypoints_m=waypoints_m,
-        start_m=start_m,
-        seed=seed,
-        clearance_m=clearance_m,
-        reach_m=abs(mount["forward_m"]),
+        found, source, **way, seed=seed, reach_m=abs(mount["forward_m"])
     )
-    return clutter.add_clutter(driven, chairs=chairs, doors_ajar=doors_ajar, seed=seed)
+    return clutter.add_clutter(driven, **things, seed=seed)
 
 
 def prepare_survey(
-    site: building.Building,
-    *,
-    seed: int,
-    mount: Settings,
-    sensor: Settings,
-    errors: Settings,
-    drive: Settings,
-    people: Settings,
+    site: building.Building, settings: Settings, *, seed: int
 ) -> sweeps.SimulatedSurvey:
     """Put a rover with a sensor on its way through a floor.
 
@@ -105,13 +86,10 @@ def prepare_survey(
     ----------
     site : building.Building
         With a way.
-    mount, sensor, errors, drive, people : dict
-        Settings of `rover.mount_sensor`, `sensor_models.make_sensor`,
-        `sensor_errors.draw_sensor_errors`, `plan_motion` and `invite_people`.
-
-    Returns
-    -------
-    sweeps.SimulatedSurvey
+    settings : dict
+        `mount`, `sensor`, `errors`, `drive` and `people`: see `rover.mount_sensor`,
+        `sensor_models.make_sensor`, `sensor_errors.StatedErrors`, `plan_motion` and
+        `invite_people`.
 
     Raises
     ------
@@ -122,63 +100,52 @@ def prepare_survey(
     """
     if site.waypoints_m is None:
         raise ValueError("a survey needs a building with a way through it")
-    lidar = sensor_models.make_sensor(**sensor)
-    base_from_sensor = rover.mount_sensor(**mount)
-    way = plan_motion(site.waypoints_m, base_from_sensor, **drive, seed=seed)
+    lidar = sensor_models.make_sensor(**settings["sensor"])
+    base_from_sensor = rover.mount_sensor(**settings["mount"])
+    way = plan_motion(site.waypoints_m, base_from_sensor, settings["drive"], seed=seed)
     free = overlays.subtract_areas(site.floor_m, site.obstacles_m)
+    stated = sensor_errors.StatedErrors(**settings["errors"])
     return sweeps.SimulatedSurvey(
         mesh=site.mesh,
         sensor=lidar,
-        errors=sensor_errors.draw_sensor_errors(lidar, **errors, seed=seed),
+        errors=sensor_errors.draw_sensor_errors(lidar, stated, seed=seed),
         drive=way,
         base_from_sensor=base_from_sensor,
-        people=invite_people(free, way, **people, seed=seed),
-        t_ns=rover.scan_stamps(way, sensor["rate_hz"]),
+        people=invite_people(free, way, settings["people"], seed=seed),
+        t_ns=rover.scan_stamps(way, settings["sensor"]["rate_hz"]),
         seed=seed,
     )
 
 
 def plan_motion(
-    waypoints_m: FloatArray,
-    base_from_sensor: FloatArray,
-    *,
-    speed_m_s: float,
-    turn_rate_deg_s: float,
-    sway_m: float,
-    sway_deg: float,
-    sway_hz: float,
-    sway_known: bool,
-    seed: int,
+    waypoints_m: FloatArray, base_from_sensor: FloatArray, drive: Settings, *, seed: int
 ) -> rover.Drive:
     """Return a drive as `rover.plan_drive`, swaying as `rover.carry_in_hand`.
 
-    `sway_known` says whether the recorded poses state the sway; the motion is the same.
+    Whether the recorded poses state the sway, `sway_known`, is another's: the motion is the same.
     """
-    del sway_known
-    way = rover.plan_drive(waypoints_m, speed_m_s=speed_m_s, turn_rate_deg_s=turn_rate_deg_s)
-    hand = {"sway_m": sway_m, "sway_deg": sway_deg, "sway_hz": sway_hz}
+    speed = {key: drive[key] for key in ("speed_m_s", "turn_rate_deg_s")}
+    hand = {key: drive[key] for key in ("sway_m", "sway_deg", "sway_hz")}
+    way = rover.plan_drive(waypoints_m, **speed)
     return rover.carry_in_hand(way, base_from_sensor, **hand, seed=seed)
 
 
 def invite_people(
-    free: BaseGeometry,
-    way: rover.Drive,
-    *,
-    count: int,
-    speed_m_s: float,
-    standing: int,
-    followers: int,
-    seed: int,
+    free: BaseGeometry, way: rover.Drive, wanted: Settings, *, seed: int
 ) -> tuple[people.Person, ...]:
     """Return so many people who wander, who stand about and who follow the sensor.
 
-    See `people.simulate_walkers`, `companions.place_standing` and `companions.follow_sensor`.
+    Parameters
+    ----------
+    wanted : dict
+        `count` and `speed_m_s` of `people.simulate_walkers`, `standing` of
+        `companions.place_standing`, `followers` of `companions.follow_sensor`.
     """
-    until_s = way.t_s[-1]
+    pace = {"speed_m_s": wanted["speed_m_s"], "until_s": way.t_s[-1]}
     return (
-        *people.simulate_walkers(free, count, speed_m_s=speed_m_s, until_s=until_s, seed=seed),
-        *companions.place_standing(free, way, standing, seed=seed),
-        *companions.follow_sensor(free, way, followers),
+        *people.simulate_walkers(free, wanted["count"], **pace, seed=seed),
+        *companions.place_standing(free, way, wanted["standing"], seed=seed),
+        *companions.follow_sensor(free, way, wanted["followers"]),
     )
 
 
@@ -195,26 +162,31 @@ def survey_belief(
     Parameters
     ----------
     odometry : dict
-        Settings of `odometry.integrate_odometry`.
+        Settings of `odometry.WheelErrors`.
     kind : {"amcl", "slam"}
         Whether the localiser knows the map, or makes it.
     sway_known : bool
         Whether odometry and localiser state how the hand sways; otherwise they are planar.
     **localiser
-        Settings of `localisation.simulate_belief`, `localisation.draw_start` and
-        `slam.track_poses`.
+        Settings of `localisation.Localiser` and `localisation.LocaliserErrors`,
+        `localisation.draw_start` and `slam.track_poses`.
     """
     tick_ns = rover.tick_stamps(survey.drive, _turn_ns(survey))
     swaying = survey.drive.sway if sway_known else None
     slam = {key: localiser.pop(key) for key in _SLAM}
+    start = {key: localiser.pop(key) for key in _START}
+    speaking = {key: localiser.pop(key) for key in _SPEAKING}
     return localisation.simulate_belief(
         tick_ns,
         rover.level_poses(survey.drive, tick_ns),
-        odometry=odometry,
-        start={key: localiser.pop(key) for key in _START},
-        slam=slam if kind == "slam" else None,
+        localisation.Localiser(
+            **speaking,
+            errors=localisation.LocaliserErrors(**localiser),
+            start=start,
+            slam=slam if kind == "slam" else None,
+        ),
+        WheelErrors(**odometry),
         sway=None if swaying is None else hand_sway.sway_poses(swaying, tick_ns),
-        **localiser,
         seed=survey.seed,
     )
 
