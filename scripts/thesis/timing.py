@@ -70,15 +70,12 @@ def time_extractor(
         `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
     sensors = per_registered_scan.sensor_keywords(scan_ids, store.path, registration)
-    keywords = {
-        "planar": store.planar,
-        "extractor": method,
-        "settings": extractors.select_settings(method.settings, settings),
-    }
+    own = extractors.select_settings(method.settings, settings)
+    finder = extractors.WallFinder(method, own, store.planar)
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
         call = partial(
-            extractors.find_wall_segments, scan_id, xyz_m, **keywords, **sensors[scan_id]
+            extractors.find_wall_segments, scan_id, xyz_m, finder=finder, **sensors[scan_id]
         )
         if number == 0:
             # the first call loads and compiles what all others use

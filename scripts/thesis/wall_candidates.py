@@ -46,13 +46,9 @@ def count_candidates(
         for model in MODELS:
             for inlier_m in BANDS_M:
                 given = {**settings, "model": model, "inlier_m": inlier_m}
+                finder = extractors.make_wall_finder(method, given, planar=store.planar)
                 found = extractors.find_wall_segments(
-                    scan_id,
-                    xyz_m,
-                    planar=store.planar,
-                    extractor=method,
-                    settings=extractors.select_settings(method.settings, given),
-                    **sensors[scan_id],
+                    scan_id, xyz_m, finder=finder, **sensors[scan_id]
                 )
                 lines_m = np.stack([found.start_m, found.end_m], axis=1)
                 face = wall_findings.find_main_faces(lines_m, faces_m)

@@ -5,7 +5,6 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import wall_scans
@@ -15,8 +14,7 @@ from scanplan.extraction import cluster_ransac, normals
 from scanplan.extraction.extractors import (
     EXTRACTORS,
     find_wall_segments,
-    select_max_rmse_m,
-    select_settings,
+    make_wall_finder,
 )
 from scanplan.project.stage_settings import select_extractors
 from scanplan.rays import sensor_frame
@@ -165,11 +163,11 @@ def raster_lines(scans: Scans, *, planar: bool = False) -> FloatArray:
 def _extract_lines(
     survey: wall_scans.Survey, name: str, settings: Settings
 ) -> tuple[FloatArray, IntArray]:
-    keywords = _keywords(name, settings)
+    finder = make_wall_finder(EXTRACTORS[name], settings[name], planar=False)
     lines: list[FloatArray] = [np.empty((0, 2, 2))]
     scan = [np.empty(0, int)]
     for i, xyz_m in survey.scans:
-        walls = find_wall_segments(i, xyz_m, sensor_xyz_m=survey.sensors[i], **keywords)
+        walls = find_wall_segments(i, xyz_m, sensor_xyz_m=survey.sensors[i], finder=finder)
         lines.append(np.stack([walls.start_m, walls.end_m], axis=1))
         scan.append(np.full(len(walls), i))
     return np.concatenate(lines), np.concatenate(scan)
@@ -187,20 +185,10 @@ def _extraction_times(
                 i,
                 xyz_m,
                 sensor_xyz_m=survey.sensors[i],
-                **_keywords(name, settings),
+                finder=make_wall_finder(EXTRACTORS[name], settings[name], planar=False),
             )
             took_ms[name].append(_milliseconds(call))
     return took_ms
-
-
-def _keywords(name: str, settings: Settings) -> dict[str, Any]:
-    """Return what an extractor is called with beside a scan, as by the stage, and its settings."""
-    return {
-        "planar": False,
-        "extractor": EXTRACTORS[name],
-        "settings": select_settings(EXTRACTORS[name].settings, settings[name]),
-        "max_rmse_m": select_max_rmse_m(EXTRACTORS[name], settings[name]),
-    }
 
 
 def _milliseconds(function: Callable[[], object]) -> float:

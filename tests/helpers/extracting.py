@@ -3,7 +3,7 @@
 import numpy as np
 
 from helpers import toy_rooms
-from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, select_settings
+from scanplan.extraction.extractors import EXTRACTORS, find_wall_segments, make_wall_finder
 
 _CLUSTERS = {"reach_deg": 3.5, "bandwidth_m": 0.3, "projection": "normal"}
 _THESIS = {"max_tilt_deg": 15.0, "model": "line", "max_trials": 50}
@@ -21,15 +21,13 @@ def extract(
     name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, max_rmse_m=MAX_RMSE_M, **more
 ):
     """Return the wall segments of a scan; `more` are further settings."""
-    method = EXTRACTORS[name]
     return find_wall_segments(
         3,
         xyz_m,
         sensor_xyz_m=np.asarray(sensor_xyz_m, float),
-        planar=planar,
-        extractor=method,
-        settings=select_settings(method.settings, SETTINGS[name] | more),
-        max_rmse_m=max_rmse_m if method.drops_clutter else np.inf,
+        finder=make_wall_finder(
+            EXTRACTORS[name], SETTINGS[name] | more | {"max_rmse_m": max_rmse_m}, planar=planar
+        ),
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from helpers import toy_rooms
 from scanplan.extraction import known_segments
-from scanplan.extraction.extractors import EXTRACTORS, select_settings
+from scanplan.extraction.extractors import EXTRACTORS, make_wall_finder
 from scanplan.store import schemas, tables
 
 SETTINGS = {
@@ -18,13 +18,10 @@ SETTINGS = {
 }
 SENSOR = np.array([2.0, 1.6, 0.9])
 ROOM = toy_rooms.laser(SENSOR, seed=1)
-METHOD = EXTRACTORS["cluster_ransac"]
 KEYWORDS = {
     "recipe": b"a",
     "sensor_xyz_m": SENSOR,
-    "planar": True,
-    "extractor": METHOD,
-    "settings": select_settings(METHOD.settings, SETTINGS),
+    "finder": make_wall_finder(EXTRACTORS["cluster_ransac"], SETTINGS, planar=True),
 }
 
 

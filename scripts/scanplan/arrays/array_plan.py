@@ -221,14 +221,10 @@ def _extract_segments(placed: PlacedScans, scan_ids: IntArray) -> Columns:
     """Return the wall segments of some scans: the columns of `schemas.WALLS`."""
     name = placed.settings["plan"]["extractor"]
     settings = stage_settings.select_extractor(placed.settings, name)
-    extractor = extractors.EXTRACTORS[name]
-    find = partial(
-        extractors.find_wall_segments,
-        planar=placed.planar,
-        extractor=extractor,
-        settings=extractors.select_settings(extractor.settings, settings),
-        max_rmse_m=extractors.select_max_rmse_m(extractor, settings),
+    finder = extractors.make_wall_finder(
+        extractors.EXTRACTORS[name], settings, planar=placed.planar
     )
+    find = partial(extractors.find_wall_segments, finder=finder)
     found = [
         find(i, xyz_m, sensor_xyz_m=placed.sensors_m[i]) for i, xyz_m in placed.scans(scan_ids)
     ]

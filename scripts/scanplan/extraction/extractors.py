@@ -75,20 +75,35 @@ def select_settings(kind: type[_Class], settings: Settings) -> _Class:
     return kind(**{name: settings[name] for name in wanted})
 
 
-def select_max_rmse_m(extractor: Extractor, settings: Settings) -> float:
-    """Return by how much points of a wall scatter at most, among more settings."""
-    return settings["max_rmse_m"] if extractor.drops_clutter else math.inf
+@dataclass(frozen=True)
+class WallFinder:
+    """How the wall segments of a survey's scans are found.
+
+    Attributes
+    ----------
+    settings : ExtractorSettings
+        Of the extractor's class.
+    planar : bool
+        Whether all points of a scan are in one horizontal plane.
+    max_rmse_m : float, > 0
+        Segments whose points scatter more about their line are clutter.
+    """
+
+    extractor: Extractor
+    settings: ExtractorSettings
+    planar: bool
+    max_rmse_m: float = math.inf
+
+
+def make_wall_finder(extractor: Extractor, settings: Settings, *, planar: bool) -> WallFinder:
+    """Return an extractor with its own among more settings, as a plan uses it."""
+    own = select_settings(extractor.settings, settings)
+    max_rmse_m = settings["max_rmse_m"] if extractor.drops_clutter else math.inf
+    return WallFinder(extractor, own, planar, max_rmse_m)
 
 
 def find_wall_segments(
-    scan_id: int,
-    xyz_m: FloatArray,
-    *,
-    sensor_xyz_m: FloatArray,
-    planar: bool,
-    extractor: Extractor,
-    settings: ExtractorSettings,
-    max_rmse_m: float = math.inf,
+    scan_id: int, xyz_m: FloatArray, *, sensor_xyz_m: FloatArray, finder: WallFinder
 ) -> segments.WallSegments:
     """Extract the wall segments of one scan.
 
@@ -98,12 +113,6 @@ def find_wall_segments(
         The scan's points, map frame; their order does not matter.
     sensor_xyz_m : (3,) float
         The sensor's position, map frame.
-    planar : bool
-        Whether all points are in one horizontal plane.
-    settings : ExtractorSettings
-        Of the extractor's class.
-    max_rmse_m : float, > 0
-        Segments whose points scatter more about their line are clutter.
 
     Raises
     ------
@@ -111,6 +120,6 @@ def find_wall_segments(
         If a coordinate is not finite.
     """
     points = centre_in_order(xyz_m, sensor_xyz_m)
-    scan = segments.view_scan(points, planar=planar)
-    rows = extractor.extract(scan_id, points, scan, settings)
-    return segments.collect_segments(rows, sensor_xyz_m, max_rmse_m)
+    scan = segments.view_scan(points, planar=finder.planar)
+    rows = finder.extractor.extract(scan_id, points, scan, finder.settings)
+    return segments.collect_segments(rows, sensor_xyz_m, finder.max_rmse_m)

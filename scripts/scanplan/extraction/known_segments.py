@@ -7,12 +7,11 @@ beside the segments in their table.
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.extraction.extractors import find_wall_segments
+from scanplan.extraction.extractors import WallFinder, find_wall_segments
 from scanplan.extraction.segments import WallSegments, segment_columns
 from scanplan.store import schemas, tables
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray, Settings
@@ -39,8 +38,7 @@ def find_unknown_segments(
     recipe: bytes,
     known: Sequence[str],
     sensor_xyz_m: FloatArray,
-    planar: bool,
-    **keywords: Any,
+    finder: WallFinder,
 ) -> tuple[str, WallSegments | None]:
     """Extract the wall segments of one scan, unless they are known.
 
@@ -52,7 +50,7 @@ def find_unknown_segments(
         See `digest_recipe`.
     known : sequence of str
         Digests of scans whose segments are known.
-    sensor_xyz_m, planar, **keywords
+    sensor_xyz_m, finder
         See `extractors.find_wall_segments`.
 
     Returns
@@ -64,13 +62,13 @@ def find_unknown_segments(
     """
     # of all scans that will ever be recorded no two share 16 bytes by chance
     total = hashlib.blake2b(recipe, digest_size=16)
-    total.update(json.dumps([scan_id, planar, *np.asarray(sensor_xyz_m, float).tolist()]).encode())
+    place_m = np.asarray(sensor_xyz_m, float).tolist()
+    total.update(json.dumps([scan_id, finder.planar, *place_m]).encode())
     total.update(np.ascontiguousarray(xyz_m).data)
     digest = total.hexdigest()
     if digest in known:
         return digest, None
-    keywords |= {"sensor_xyz_m": sensor_xyz_m, "planar": planar}
-    return digest, find_wall_segments(scan_id, xyz_m, **keywords)
+    return digest, find_wall_segments(scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, finder=finder)
 
 
 class KnownSegments:

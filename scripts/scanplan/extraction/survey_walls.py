@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 
 from scanplan.errors import StageError
 from scanplan.extraction import known_segments, map_tilt, segments
-from scanplan.extraction.extractors import EXTRACTORS, select_max_rmse_m, select_settings
+from scanplan.extraction.extractors import EXTRACTORS, make_wall_finder
 from scanplan.stage import log, witnesses
 from scanplan.stage.per_registered_scan import sensor_keywords
 from scanplan.stage.per_scan import map_scans
@@ -60,7 +60,6 @@ def write_survey_walls(
         raise StageError(
             f"extractor {extractor}: is not known; choose one of {', '.join(EXTRACTORS)}"
         )
-    method = EXTRACTORS[extractor]
     store = tables.ScanStore(scans)
     read_registered_scans(registration, store)
     wanted = store.scan_ids if scan_ids is None else scan_ids
@@ -74,10 +73,7 @@ def write_survey_walls(
         scan_ids=wanted,
         per_scan={i: {**sensors[i], "known": earlier.list_digests(i)} for i in wanted.tolist()},
         recipe=known_segments.digest_recipe(extractor, settings, code),
-        planar=store.planar,
-        extractor=method,
-        settings=select_settings(method.settings, settings),
-        max_rmse_m=select_max_rmse_m(method, settings),
+        finder=make_wall_finder(EXTRACTORS[extractor], settings, planar=store.planar),
     )
     told = NO_DOUBT if store.planar else _tell_tilt(stage, store, sensors)
     columns = earlier.complete(wanted, found)

@@ -149,24 +149,23 @@ def cast_at_face(
         high = np.hstack([high[:, is_near], cut_high])
         scans = np.concatenate([scans[is_near], scans[far[row]]])
     xyz_m, view = rays.gather_rows(low, high, scans)
-    ends_m = line.along_m(xyz_m[:, :2]), line.offset_m(xyz_m[:, :2]), xyz_m[:, 2]
     normal = np.broadcast_to(line.normal, (len(sensors_m), 2))
     views = Views(np.arange(len(sensors_m)), sensor_along_m, side_m, normal, least_side_m)
-    return _meet(rays, views, view, *ends_m, at_m)
+    return _meet(rays, views, view, line, xyz_m, at_m)
 
 
 def _meet(
     rays: RaySet,
     views: Views,
     view: IntArray,
-    end_along_m: FloatArray,
-    end_offset_m: FloatArray,
-    end_z_m: FloatArray,
+    line: Line,
+    xyz_m: FloatArray,
     at_m: float,
 ) -> FaceRays:
-    """Return rays where they meet the plane, given where they end; (n,) each."""
+    """Return rays where they meet the plane over a line, given where they end, (n, 3)."""
+    end_along_m = line.along_m(xyz_m[:, :2])
     side_m = views.side_m.take(view)
-    behind_m = -end_offset_m * np.sign(side_m)
+    behind_m = -line.offset_m(xyz_m[:, :2]) * np.sign(side_m)
     distance_m = np.abs(side_m)
     share = distance_m / np.maximum(distance_m + behind_m, ROUNDING)
     share = np.where(np.abs(behind_m) <= at_m, 1.0, share)
@@ -176,7 +175,7 @@ def _meet(
         views=views,
         view=view,
         along_m=sensor_along_m + share * (end_along_m - sensor_along_m),
-        height_m=sensor_z_m + share * (end_z_m - sensor_z_m) - rays.ground_z_m,
+        height_m=sensor_z_m + share * (xyz_m[:, 2] - sensor_z_m) - rays.ground_z_m,
         behind_m=behind_m,
         at_m=at_m,
     )

@@ -41,14 +41,9 @@ class WallSearch:
         self, scan_id: int, xyz_m: FloatArray, sensor_xyz_m: FloatArray
     ) -> segments.WallSegments:
         """Return the segments of one scan, (n, 3) in the map, of a sensor at (3,)."""
+        finder = extractors.WallFinder(_EXTRACTOR, self.settings, self.planar, self.max_rmse_m)
         return extractors.find_wall_segments(
-            scan_id,
-            xyz_m,
-            sensor_xyz_m=sensor_xyz_m,
-            planar=self.planar,
-            extractor=_EXTRACTOR,
-            settings=self.settings,
-            max_rmse_m=self.max_rmse_m,
+            scan_id, xyz_m, sensor_xyz_m=sensor_xyz_m, finder=finder
         )
 
     def find_all(
@@ -67,8 +62,9 @@ class WallSearch:
 
 def make_wall_search(settings: Settings, *, planar: bool) -> WallSearch:
     """Return the search with the settings that `stage_settings.select_extractor` selects."""
+    finder = extractors.make_wall_finder(_EXTRACTOR, settings, planar=planar)
     own = extractors.select_settings(ClusterRansacSettings, settings)
-    return WallSearch(own, extractors.select_max_rmse_m(_EXTRACTOR, settings), planar)
+    return WallSearch(own, finder.max_rmse_m, planar)
 
 
 def measure_walls(survey: SurveyTruth, findings: Findings, rows: IntArray) -> dict[str, Any]:
