@@ -23,7 +23,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
-from scanplan.validation.doubts import list_to_verify
+from scanplan.validation.doubts import list_doubts
 from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
@@ -116,7 +116,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
     north = "north unknown" if facts.north_deg is None else "north as drawn"
-    n_doubts = len(list_to_verify(plan))
+    n_doubts = len(list_doubts(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
