@@ -34,6 +34,7 @@ def _swing(hinge: float, tip: float) -> list[FloatArray]:
 
 
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
+_MIDDLE = [np.array([[0, 0, 0], [1, 0, 0]])]
 BLOCKS = {
     "DOOR-1": _leaf(0.0, 1.0),
     "DOOR-2": [*_leaf(0.0, 0.5), *_leaf(1.0, 0.5)],
@@ -45,8 +46,8 @@ BLOCKS = {
     "SWING-LEFT": _swing(0.0, 1.0),
     "SWING-RIGHT": _swing(1.0, 0.0),
     "SWING-2": [*_swing(0.0, 0.5), *_swing(1.0, 0.5)],
-    "DOORWAY": _SIDES,
-    "PARTING": [np.array([[0, 0, 0], [1, 0, 0]])],
+    "DOORWAY": _MIDDLE,
+    "PARTING": _MIDDLE,
     "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.3, 0.3)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
 }
