@@ -183,6 +183,7 @@ rule export_presentation:
     output:
         svg="results/{dataset}/plan/presentation.svg",
         pdf="results/{dataset}/plan/presentation.pdf",
+        tiles="results/{dataset}/plan/presentation_a3.pdf",
         png="results/{dataset}/plan/presentation.png",
         dxf="results/{dataset}/plan/presentation.dxf",
         walls="results/{dataset}/plan/presentation.parquet",

@@ -118,8 +118,8 @@ def _check_moment(entry: str, key: str, value: Any) -> str:
 
 
 _CHECKS: dict[str, Callable[[str, str, Any], Any]] = {
-    **dict.fromkeys(("at", "with", "world"), _check_place),
-    **dict.fromkeys(("name", "number", "by"), _check_text),
+    **dict.fromkeys(("at", "swing", "with", "world"), _check_place),
+    **dict.fromkeys(("name", "number", "use", "by"), _check_text),
     **dict.fromkeys(SIZES_M, _check_size),
     "line": _check_line,
     "crs": _check_crs,

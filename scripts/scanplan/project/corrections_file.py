@@ -30,13 +30,14 @@ _KEYS = {
     ("face", "remove"): (("at",), ()),
     ("opening", "keep"): (("at",), ()),
     ("opening", "remove"): (("at",), ()),
-    ("opening", "change"): (("at",), ("kind", "line", "width_m", "sill_m", "lintel_m")),
-    ("opening", "add"): (("line", "kind"), ("sill_m", "lintel_m")),
+    ("opening", "change"): (("at",), ("kind", "line", "swing", "width_m", "sill_m", "lintel_m")),
+    ("opening", "add"): (("line", "kind"), ("swing", "sill_m", "lintel_m")),
     ("room", "keep"): (("at",), ()),
     ("room", "remove"): (("at",), ()),
-    ("room", "change"): (("at",), ("name", "number")),
+    ("room", "change"): (("at",), ("name", "number", "use")),
     ("room", "split"): (("line",), ()),
     ("room", "merge"): (("at", "with"), ()),
+    ("furniture", "change"): (("at", "kind"), ()),
     ("reference_point", "add"): (("at", "world", "crs"), ()),
     ("check_point", "add"): (("at", "world", "crs"), ()),
 }
@@ -50,10 +51,11 @@ OUTLINES = ("split", "merge")
 """What is done to the outlines of rooms, before anything is said of the rooms that it leaves."""
 _KINDS = {
     "wall": ("furniture", "column"),
-    "opening": ("door", "window", "passage", "glass"),
+    "opening": ("door", "sliding door", "window", "passage", "glass"),
+    "furniture": ("toilet", "basin", "bath", "shower", "sink", "cooker", "stairs"),
 }
-"""What a person may call an opening, and what is drawn as a wall."""
-_PLACES = ("at", "line", "with", "world")
+"""What a person may call an opening, what is drawn as a wall, and a piece of furniture."""
+_PLACES = ("at", "line", "swing", "with", "world")
 """Keys of places, in metres."""
 _DIGITS = 12
 """Of a digest of recordings: no two surveys that a person has are of the same."""
@@ -70,7 +72,7 @@ class Correction:
     entry : str
         File and number of the entry, for messages.
     element : str
-        wall, face, opening, room, or one of `POINTS`.
+        wall, face, opening, room, furniture, or one of `POINTS`.
     action : str
         keep, remove, add, change, or one of `OUTLINES`.
     at_m : (float, float)
@@ -79,9 +81,11 @@ class Correction:
     line_m : two (float, float) or None
         Ends of what is added, of where an element is moved to, or of what parts a room.
     kind : str
-        Of an opening, or what something is that is no wall.
-    name, number : str
+        Of an opening or a piece of furniture, or what something is that is no wall.
+    name, number, use : str
         Of a room.
+    swing_m : (float, float) or None
+        A place beside a door, on the side that it opens to, nearer to its hinges.
     thickness_m : float or None
         Of a wall.
     width_m, sill_m, lintel_m : float or None
@@ -102,6 +106,8 @@ class Correction:
     kind: str = ""
     name: str = ""
     number: str = ""
+    use: str = ""
+    swing_m: tuple[float, float] | None = None
     thickness_m: float | None = None
     width_m: float | None = None
     sill_m: float | None = None
@@ -217,7 +223,7 @@ def _check_entry(entry: str, values: Any) -> Correction:
     keys = (*needed, *possible)
     unknown = sorted(map(str, set(values) - {"element", "action", *keys, *_OF_ANY}))
     missing = [key for key in needed if key not in values]
-    if action == "change" and not any(key in values for key in possible):
+    if action == "change" and possible and not any(key in values for key in possible):
         missing.append(" or ".join(possible))
     if unknown or missing:
         fault = f"has {', '.join(unknown)}" if unknown else f"has no {', '.join(missing)}"

@@ -15,6 +15,7 @@ FILES = {
     "glb": {"glb": "plan/plan.glb"},
     "gpkg": {"gpkg": "plan/plan.gpkg"},
     "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
+    "imdf": {"imdf": "plan/imdf.geojson"},
     "json": {"json": "plan/rooms.json"},
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
     "masks": {
@@ -29,6 +30,7 @@ FILES = {
 PRESENTATION = {
     "presentation": {
         **{suffix: f"plan/presentation.{suffix}" for suffix in ("svg", "pdf", "png", "dxf")},
+        "tiles": "plan/presentation_a3.pdf",
         "walls": "plan/presentation.parquet",
     }
 }

@@ -310,19 +310,19 @@ too: as many as were expected through a window above its sill, or through a gap 
 """
 ROOMS = Schema(
     "rooms",
-    2,
+    3,
     {
         "room": "int32",
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
-        "name": "string",
-        "corrected": "string",
+        **dict.fromkeys(("name", "use", "corrected"), "string"),
         "geometry": "binary",
     },
     ("room",),
     geometry=True,
 )
+"""Rooms: `name` and `use` are what a person calls them, empty where nobody has."""
 FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 
@@ -333,12 +333,16 @@ corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why ot
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
 """Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""
+SLIDING = "sliding"
+"""What a person calls a leaf that slides along its wall."""
+FIXTURES = ("toilet", "basin", "bath", "shower", "sink", "cooker", "stairs")
+"""What a person may call a piece of furniture that has a symbol of its own in drawings."""
 FURNITURE = Schema(
     "furniture",
-    2,
+    3,
     {
         "furniture": "int32",
-        "kind": "string",
+        **dict.fromkeys(("kind", "named"), "string"),
         **dict.fromkeys(("area_m2", "z_min_m", "z_max_m"), "float64"),
         "n_points": "int32",
         "n_scans": "int32",
@@ -349,7 +353,7 @@ FURNITURE = Schema(
 )
 """What stands in rooms and is no wall: outlines, by the points of chosen scans that show it.
 
-Of `kind` `PIECE`, `COLUMN` or `LEAF`.
+Of `kind` `PIECE`, `COLUMN` or `LEAF`; `named` what a person calls it, `SLIDING` or of `FIXTURES`.
 Heights are in the map frame, NaN of planar scans.
 """
 EVIDENCE = Schema(

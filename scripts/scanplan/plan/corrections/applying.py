@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan.corrections import added, changed, outlines
+from scanplan.plan.corrections import added, changed, named, outlines
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import OUTLINES, POINTS, Correction
 from scanplan.types import FloatArray
@@ -108,6 +108,8 @@ def _find(rows: PlanRows, correction: Correction) -> Row | None:
     place = shapely.Point(correction.at_m)
     if correction.element == "room":
         return rows.room_at(place)
+    if correction.element == "furniture":
+        return named.find_piece(rows, place)
     return added.find_nearest(rows.of(correction.element), place)
 
 
@@ -124,6 +126,9 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
     if correction.element == "face":
         act = changed.keep_face if correction.action == "keep" else changed.remove_face
         return act(rows, row, SAID[correction.action])
+    if correction.element == "furniture":
+        row["named"] = correction.kind
+        return None
     is_change = correction.action == "change"
     if is_change and (fault := _CHANGES[correction.element](rows, row, correction)):
         return fault
@@ -139,6 +144,7 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
 
 def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
     room["name"] = " ".join(filter(None, [correction.number, correction.name or room["name"]]))
+    room["use"] = correction.use or room["use"]
 
 
 def _draw_outline(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
@@ -186,6 +192,8 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
         raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
     added.add_opening(rows, wall, line_m, correction.kind, SAID["add"])
+    if fault := named.hang_leaf(rows, rows.openings[-1], correction):
+        raise StageError(f"{correction.entry}: the opening {fault}")
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
     rows.openings[-1] |= {name: of for name, of in heights_m.items() if of is not None}
     outcome.n_applied += 1

@@ -6,7 +6,7 @@ import shapely
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added
+from scanplan.plan.corrections import added, named
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import Correction
 from scanplan.store import schemas
@@ -66,7 +66,7 @@ def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str 
     opening["type"] = correction.kind or opening["type"]
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
     opening |= {name: value for name, value in heights_m.items() if value is not None}
-    return None
+    return named.hang_leaf(rows, opening, correction)
 
 
 def keep_face(rows: PlanRows, face: Row, said: str) -> None:
@@ -120,10 +120,10 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
 def _make_furniture(rows: PlanRows, wall: Row, kind: str) -> None:
     half_m = max(added.half_m_of(wall), _FRONT_M / 2)
     ground = overlays.buffer_shapes(floorplan.draw_axis(wall), half_m, cap_style="flat")
-    number = max((row["furniture"] for row in rows.furniture), default=-1) + 1
+    number = rows.next_number("furniture")
     known = {name: wall[name] for name in ("z_min_m", "z_max_m", "n_points", "n_scans")}
     shape = {"area_m2": ground.area, "geometry": shapely.to_wkb(ground)}
-    rows.furniture.append({"furniture": number, "kind": kind, **known, **shape})
+    rows.furniture.append({"furniture": number, "kind": kind, "named": "", **known, **shape})
 
 
 def _move_wall(rows: PlanRows, wall: Row, line_m: FloatArray) -> None:

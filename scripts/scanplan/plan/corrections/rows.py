@@ -34,8 +34,8 @@ class PlanRows:
     furniture: list[Row]
 
     def of(self, element: str) -> list[Row]:
-        """Return the rows of walls, faces, openings or rooms by the singular."""
-        return getattr(self, f"{element}s")
+        """Return the rows of walls, faces, openings or rooms by the singular; of furniture."""
+        return self.furniture if element == "furniture" else getattr(self, f"{element}s")
 
     def wall_of(self, row: Row) -> Row | None:
         """Return the wall that a face or an opening is of; None of none."""
