@@ -41,6 +41,8 @@ class Page:
             [
                 find(), "--headless=new", "--remote-debugging-pipe", "--no-sandbox",
                 "--disable-gpu", "--no-first-run", "--disable-dev-shm-usage",
+                # WebGL without a graphics card
+                "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                 "--disable-background-networking", f"--user-data-dir={folder}",
                 "about:blank",
             ],

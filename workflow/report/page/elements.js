@@ -44,6 +44,7 @@ const elements = (() => {
     for (const part of document.querySelectorAll("[data-element]")) {
       part.classList.toggle("picked", part.dataset.element === element);
     }
+    dispatchEvent(new CustomEvent("picked", { detail: element }));
   }
 
   function showElement(element, place = placeOf(element)) {
