@@ -162,7 +162,11 @@ const solid = (() => {
     scene.controls.update();
     draw();
   }
-  const lookAtAll = () => look([0, -0.75 * scene.size, 0.85 * scene.size], [0, 0, 0]);
+  // as near as all of it is seen, in a wide view and in a narrow one
+  function lookAtAll() {
+    const far = 0.62 * scene.size * Math.max(1, 1.4 / (view.clientWidth / view.clientHeight));
+    look([0, -far, 1.1 * far], [0, 0, 0]);
+  }
   function turn(aside, up) {
     const { camera, controls } = scene;
     const from = camera.position.clone().sub(controls.target);
