@@ -35,8 +35,8 @@ PRESENTATION = {
     }
 }
 """The same of the stage `export_presentation`."""
-CLOUD = ("laz", "cloud.laz")
-"""The format and the file of the stage `export_cloud`."""
+CLOUD = {"laz": {"cloud": "cloud.laz", "picture": "cloud.png"}}
+"""The same of the stage `export_cloud`."""
 
 
 LIBRARIES = {"ifc": "ifcopenshell", "editable": "ifcopenshell"}
@@ -71,6 +71,6 @@ def list_files(formats: Iterable[str]) -> dict[str, str]:
 def list_exports(formats: Iterable[str]) -> list[str]:
     """Return all files of some formats, below results/<dataset>/."""
     asked = list(formats)
-    laz, cloud = CLOUD
-    drawn = [file for name in PRESENTATION if name in asked for file in PRESENTATION[name].values()]
-    return [*list_files(asked).values(), *drawn, *([cloud] if laz in asked else [])]
+    others = PRESENTATION | CLOUD
+    drawn = [file for name in others if name in asked for file in others[name].values()]
+    return [*list_files(asked).values(), *drawn]

@@ -28,6 +28,7 @@ _WORDS = {
     "walls.csv": "walls (CSV)",
     "rooms.json": "rooms and doors (JSON)",
     "cloud.laz": "points (LAZ)",
+    "cloud.png": "points from above (PNG)",
     "next_visit.geojson": "next visit (GeoJSON)",
     "map.yaml": "robot map (nav2)",
     "map.pgm": "its image (PGM)",
