@@ -10,6 +10,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
+from scanplan.recordings.integrity import text_lines
 from scanplan.recordings.stations.station_scans import Block, Station
 from scanplan.types import FloatArray
 
@@ -48,7 +49,8 @@ def list_ptx_stations(path: Path) -> list[Station]:
             begin = file.tell()
             left = path.stat().st_size - begin
             is_there = header.n_points * _LEAST_LINE <= left + 1  # the last line may have no end
-            n_lines = sum(1 for _ in islice(file, header.n_points)) if is_there else left
+            lines = text_lines.iterate_lines(file, name)
+            n_lines = sum(1 for _ in islice(lines, header.n_points)) if is_there else left
             if n_lines < header.n_points:
                 raise StageError(
                     f"{name}: damaged: states {header.n_points} points, and {left} bytes are behind"
@@ -113,7 +115,9 @@ def _read_blocks(
         while left > 0:
             n_lines = min(left, _BLOCK)
             try:
-                values = np.loadtxt(islice(file, n_lines), usecols=columns, ndmin=2)
+                values = np.loadtxt(
+                    text_lines.take_lines(file, n_lines, name), usecols=columns, ndmin=2
+                )
             except ValueError:
                 values = np.empty((0, 3))
             if len(values) != n_lines:
