@@ -48,6 +48,7 @@ from scanplan.project.dataset import (
     find_truth,
     list_comparison,
     list_deviations,
+    list_replaced_models,
     list_results,
     name_datasets,
     pair_surveys,

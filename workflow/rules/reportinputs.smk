@@ -129,6 +129,11 @@ def design_of(wildcards):
     return or_end(choose_design, wildcards.dataset, DATASETS[wildcards.dataset].designs)
 
 
+def models_of_earlier_design(wildcards):
+    """What is left where the job's dataset was held against a building model before, and is no more."""
+    return or_end(list_replaced_models, DATASETS[wildcards.dataset])
+
+
 def deviations_of_datasets(wildcards):
     """How every given dataset differs from its design."""
     return [file for of in GIVEN.values() for file in or_end(list_deviations, of)]

@@ -6,7 +6,7 @@ No heavy imports: this runs while the workflow is being parsed.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -348,9 +348,27 @@ def list_deviations(found: Dataset) -> list[str]:
     StageError
         If it has none, or several.
     """
-    design = design_file.choose_design(found.name, found.designs)
     files = [f"deviations.{suffix}" for suffix in DESIGN]
-    files += OF_MODEL if design.lower().endswith(".ifc") else ()
+    files += OF_MODEL if _has_model(found) else ()
+    return _place_beside_deviations(found, files)
+
+
+def list_replaced_models(found: Dataset) -> list[str]:
+    """List what an earlier design has left that was a building model, where this one is none.
+
+    Raises
+    ------
+    StageError
+        As `list_deviations`.
+    """
+    return _place_beside_deviations(found, () if _has_model(found) else OF_MODEL)
+
+
+def _has_model(found: Dataset) -> bool:
+    return design_file.choose_design(found.name, found.designs).lower().endswith(".ifc")
+
+
+def _place_beside_deviations(found: Dataset, files: Iterable[str]) -> list[str]:
     return [f"results/{found.name}/design/{file}" for file in files]
 
 
