@@ -44,10 +44,12 @@ from scanplan.project import (
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     CHANGES,
+    GROWN,
     describe_dataset,
     find_truth,
     list_comparison,
     list_deviations,
+    list_floors,
     list_replaced_models,
     list_results,
     name_datasets,

@@ -84,28 +84,54 @@ REPORT_PAGE = page_files(
     *("elements.js", "solid.js", "three.js", "walk.js", "save.js"),
 )
 CHANGES_PAGE = page_files("changes.html.j2", "changes.css", "page.css")
+FLOORS_PAGE = page_files("floors.html.j2", "overview.css")
 
 
 def plan_of(survey):
     """What a plan is compared by, of the dataset that a wildcard names, prefixed by the survey's letter."""
     wildcard = {"a": "earlier", "b": "dataset"}[survey]
 
-    def of(path):
-        return lambda wildcards: path(getattr(wildcards, wildcard))
+    def file(part):
+        return lambda wildcards: survey_files_of(getattr(wildcards, wildcard))[part]
 
-    def table(name):
-        return of(lambda dataset: plan_table_of(dataset, name))
+    return {f"{survey}_{part}": file(part) for part in COMPARED}
 
-    plan = ("faces", "walls", "openings", "rooms", "free", "furniture", "evidence")
-    files = {name: table(name) for name in plan}
-    files["confidence"] = of(
-        lambda dataset: kept([f"results/{dataset}/plan/confidence.parquet"])
-    )
-    files["scans"] = of(lambda dataset: f"results/{dataset}/scans.parquet")
-    files["registration"] = of(
-        lambda dataset: f"results/{dataset}/registration.parquet"
-    )
-    return {f"{survey}_{name}": file for name, file in files.items()}
+
+COMPARED = (
+    *("faces", "walls", "openings", "rooms", "free", "furniture", "evidence"),
+    *("confidence", "scans", "registration"),
+)
+
+
+def survey_files_of(dataset):
+    """The tables of a dataset that it is compared with others by."""
+    files = {part: plan_table_of(dataset, part) for part in COMPARED[:7]}
+    files["confidence"] = kept([f"results/{dataset}/plan/confidence.parquet"])
+    for part in ("scans", "registration"):
+        files[part] = f"results/{dataset}/{part}.parquet"
+    return files
+
+
+def surveys_until(dataset):
+    """The datasets that are given before one, the earliest first, and itself."""
+    names = list(GIVEN)
+    return names[: names.index(dataset) + 1]
+
+
+def plans_until(wildcards):
+    """What the plans of all surveys are joined by, each prefixed by the number of its survey."""
+    return {
+        f"s{row}_{part}": file
+        for row, dataset in enumerate(surveys_until(wildcards.dataset))
+        for part, file in survey_files_of(dataset).items()
+    }
+
+
+def grown_datasets(wildcards):
+    """The plan of all given surveys of a floor, and what changed from each to the next."""
+    files = changes_of_datasets(wildcards)
+    latest = list(GIVEN)[-1]
+    return [f"results/{latest}/grown/grown.{suffix}" for suffix in GROWN] + files
 
 
 def changes_of_datasets(wildcards):
@@ -116,6 +142,38 @@ def changes_of_datasets(wildcards):
         for earlier, later in pairs
         for suffix in (*CHANGES, *with_model(later))
     ]
+
+
+def surveys_of_floors():
+    """The floors of the given surveys: floor, survey, and the one before it of the same floor."""
+    floors = or_end(list_floors, RUN["dataset"])
+    return [
+        {"floor": floor, "survey": survey, "earlier": earlier}
+        for floor, surveys in floors.items()
+        for earlier, survey in zip(["", *surveys], surveys)
+    ]
+
+
+def changes_of_floors(wildcards):
+    """The pages of what changed on every floor, to which the table leads, and the reports."""
+    pages = []
+    for of in surveys_of_floors():
+        pages.append(f"results/{of['survey']}/report.html")
+        if of["earlier"]:
+            pages.append(f"results/{of['survey']}/changes/{of['earlier']}/changes.html")
+    return pages
+
+
+def tables_of_floors(wildcards):
+    """What is told of every floor at every survey, each prefixed by the number of its row."""
+    files = {}
+    for row, of in enumerate(surveys_of_floors()):
+        known = survey_files_of(of["survey"])
+        files |= {f"s{row}_{part}": known[part] for part in COMPARED[:8]}
+        if of["earlier"]:
+            place = f"results/{of['survey']}/changes/{of['earlier']}/changes.parquet"
+            files[f"s{row}_changes"] = place
+    return files
 
 
 def with_model(dataset):

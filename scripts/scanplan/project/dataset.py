@@ -64,6 +64,8 @@ OF_ALL_SCANS = "walls"
 """The folder of what extractors find in all scans, which the comparison alone asks for."""
 CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
 """Suffixes of what is made of two surveys of a floor."""
+GROWN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "dxf", "txt")
+"""Suffixes of what is made of all surveys of a floor together."""
 DESIGN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "txt")
 """Suffixes of what is made of a survey and its design."""
 OF_MODEL = ("as_built.ifc", "deviations.bcf")
@@ -338,6 +340,28 @@ def pair_surveys(names: Sequence[str]) -> list[tuple[str, str]]:
             f" give the earlier one first: {example}"
         )
     return list(pairwise(names))
+
+
+def list_floors(given: FilePath | list[FilePath] | None) -> dict[str, list[str]]:
+    """Return the surveys of each floor, the earliest first.
+
+    Parameters
+    ----------
+    given : None, path-like or list of path-like
+        As of `name_datasets`; a list in a file may state floors, see `dataset_list.read_floors`.
+
+    Raises
+    ------
+    StageError
+        As `name_datasets`.
+    """
+    stated: dict[str, str] = {}
+    for path in map(str, given if isinstance(given, list) else [given] if given else []):
+        stated |= dataset_list.read_floors(path) if dataset_list.is_list(path) else {}
+    floors: dict[str, list[str]] = {}
+    for name in name_datasets(given):
+        floors.setdefault(stated.get(name, name), []).append(name)
+    return floors
 
 
 def list_deviations(found: Dataset) -> list[str]:

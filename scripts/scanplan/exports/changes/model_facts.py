@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 import shapely
 
-from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME
+from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES
 from scanplan.design.deviations import FAULTS, UNDECIDED, WITHIN
 from scanplan.exports.changes.annotated_ifc import Properties
 from scanplan.exports.data.model_topics import Topic
 from scanplan.types import Array, Columns
 
-_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, SAME, NOT_SEEN)
+_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, *STATES, SAME, NOT_SEEN)
 """Of an element with several stretches the gravest verdict is stated, and the longest of it."""
 _OF_DESIGN = {"p": "probability", "shift_m": "deviation_m", "sigma_m": "standard_deviation_m"}
 _OF_DESIGN |= {"limit_m": "tolerance_m", "built_m2": "built_area"}
