@@ -201,6 +201,16 @@ def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
     assert (door.verdict, door.number_a) == (OPENED, -1) and not door.is_change
 
 
+def test_an_opening_that_its_plan_doubts_is_not_told_as_shut():
+    a, b = survey(), survey(doors=[DOOR], hidden=[LEAF])
+    empty = {name: values[:0] for name, values in b.plan.openings.items()}
+    object.__setattr__(b.plan, "openings", empty)
+    for p_true, is_told in ((0.6, True), (np.nan, True), (0.1, False)):
+        a.plan.openings["p_true"] = np.array([p_true])
+        (door,) = opening_changes.compare_openings(a, b)
+        assert door.verdict == SHUT and door.is_told is is_told
+
+
 def test_a_door_that_both_have_is_told_shut_or_opened_and_its_wall_the_same():
     a, b = survey(), survey(hidden=[LEAF])
     for first, second, verdict in ((a, b, SHUT), (b, a, OPENED), (b, b, SAME)):

@@ -182,7 +182,16 @@ def test_surveys_of_which_no_one_plan_can_be_made_are_refused_in_a_line():
     with pytest.raises(StageError, match=r"planar.*target changes") as fault:
         check_alike([(plan, flat), (plan, solid)])
     assert "\n" not in str(fault.value)
-    with pytest.raises(StageError, match="floor was not seen"):
-        place_drive(solid, plan, PlaneMotion(), plan)
-    low, high = replace(plan, floor_z_m=0.1), replace(plan, floor_z_m=1.0)
-    assert place_drive(solid, low, PlaneMotion(), high).lift_m == pytest.approx(0.9)
+
+
+def test_surveys_lie_on_one_floor_or_under_one_ceiling():
+    own = own_scans([INNER], [DOOR], EAST)
+    own[0].planar = False
+    plan = survey().plan
+    low = replace(plan, floor_z_m=0.1, ceiling_z_m=2.4)
+    for high, lift_m in (
+        (replace(plan, floor_z_m=1.0), 0.9),
+        (replace(plan, ceiling_z_m=3.0), 0.6),
+        (plan, 0.0),
+    ):
+        assert place_drive(own, low, PlaneMotion(), high).lift_m == pytest.approx(lift_m)

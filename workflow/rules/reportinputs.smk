@@ -112,6 +112,12 @@ def survey_files_of(dataset):
     return files
 
 
+def ids_of_earlier(wildcards):
+    """The ids of the earlier survey's elements; none where no files with ids are made of it."""
+    earlier = wildcards.earlier
+    return f"results/{earlier}/plan/ids.parquet" if formats_of(earlier) else []
+
+
 def surveys_until(dataset):
     """The datasets that are given before one, the earliest first, and itself."""
     names = list(GIVEN)

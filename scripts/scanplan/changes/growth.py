@@ -8,7 +8,13 @@ import numpy as np
 from scanplan.changes import comparison
 from scanplan.changes.comparison import Comparison, Scans
 from scanplan.changes.contributions import Contribution, rate_contributions
-from scanplan.changes.joined_scans import Drive, JoinedScans, check_alike, place_drive
+from scanplan.changes.joined_scans import (
+    Drive,
+    JoinedScans,
+    check_alike,
+    find_lift_m,
+    place_drive,
+)
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.stale_rays import find_stale_places
 from scanplan.changes.surveys import RaySight, Survey, read_rays
@@ -29,6 +35,8 @@ class Grown:
         Of the surveys, the earliest first.
     n_scans : sequence of int
         That each gave.
+    n_unlevelled : int
+        Surveys of which neither floor nor ceiling ties heights to those of the first.
     steps : sequence of Comparison
         What each survey but the first changed in what was known before.
     contributions : sequence of Contribution
@@ -38,6 +46,7 @@ class Grown:
     evidence: Columns
     names: Sequence[str]
     n_scans: Sequence[int]
+    n_unlevelled: int
     steps: Sequence[Comparison]
     contributions: Sequence[Contribution]
 
@@ -88,6 +97,7 @@ def grow_plan(
         evidence,
         [plan.name for plan, _ in surveys],
         [len(drive.known.scan_ids) for drive in drives],
+        sum(not own[0].planar and find_lift_m(plan, first) is None for plan, own in later),
         steps,
         contributions,
     )

@@ -52,6 +52,9 @@ def summarise_growth(grown: Grown) -> list[str]:
     for (before, after), step in zip(pairwise(grown.names), grown.steps, strict=True):
         said = change_table.summarise_changes(step.changes)
         lines += [f"{before} to {after}: {line}" for line in said]
+    if grown.n_unlevelled:
+        blind = say_count(grown.n_unlevelled, "survey")
+        lines.append(f"{blind}: neither floor nor ceiling was seen, heights are those of its map")
     return [*lines, _summarise_stale(grown.contributions)]
 
 

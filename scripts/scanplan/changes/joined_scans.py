@@ -99,7 +99,9 @@ class Drive:
 
 
 def place_drive(scans: Scans, plan: FloorPlan, motion: PlaneMotion, first: FloorPlan) -> Drive:
-    """Return the scans of a survey on the floor of the first.
+    """Return the scans of a survey on the floor of the first, or under its ceiling.
+
+    Where neither was seen by both, heights are taken as those of one map.
 
     Parameters
     ----------
@@ -107,22 +109,19 @@ def place_drive(scans: Scans, plan: FloorPlan, motion: PlaneMotion, first: Floor
         Of the survey, and of the first.
     motion : PlaneMotion
         From the frame of the survey to that of the first.
-
-    Raises
-    ------
-    StageError
-        If they are of three dimensions and the floor was not seen by one of the two.
     """
     if scans[0].planar:
         return Drive(plan.name, scans, motion, 0.0, 0.0)
-    lift_m = first.floor_z_m - plan.floor_z_m
-    if not np.isfinite(lift_m):
-        blind = plan.name if np.isfinite(first.floor_z_m) else first.name
-        raise StageError(
-            f"{blind}: its floor was not seen, by which surveys are laid on one another in height;"
-            " compare them by the target changes"
-        )
-    return Drive(plan.name, scans, motion, lift_m, first.floor_z_m)
+    return Drive(plan.name, scans, motion, find_lift_m(plan, first) or 0.0, first.storey_m[0])
+
+
+def find_lift_m(plan: FloorPlan, first: FloorPlan) -> float | None:
+    """Return how far a survey lies below the first; None where nothing level was seen by both."""
+    for level in ("floor_z_m", "ceiling_z_m"):
+        lift_m = getattr(first, level) - getattr(plan, level)
+        if np.isfinite(lift_m):
+            return float(lift_m)
+    return None
 
 
 class JoinedScans:

@@ -71,6 +71,8 @@ def _is_known(opening: Opening) -> bool:
 def _list_openings(survey: Survey) -> Iterator[Opening]:
     plan = survey.plan
     left_m, right_m = plan.sides_m
+    unrated = np.full(len(plan.openings["opening"]), np.nan)
+    rated = np.nan_to_num(np.asarray(plan.openings.get("p_true", unrated), float), nan=1.0)
     lines_m = survey.motion.move(centrelines_m(plan.openings))
     for row, number in enumerate(plan.openings["opening"].tolist()):
         host = int(plan.hosts[row])
@@ -79,7 +81,8 @@ def _list_openings(survey: Survey) -> Iterator[Opening]:
             continue
         line, width_m = ray_cells.line_between(lines_m[row])
         half_m = float(left_m[host] + right_m[host]) / 2 if plan.thick[host] else 0.0
-        yield Opening(number, str(plan.openings["type"][row]), line, width_m, half_m)
+        kind, p_true = str(plan.openings["type"][row]), float(rated[row])
+        yield Opening(number, kind, line, width_m, half_m, p_true)
 
 
 def _match(of_a: list[Opening], of_b: list[Opening]) -> Pairing:
@@ -198,7 +201,9 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
         return tell(GONE, p)
     # whatever closes it, it is closed: which of the two is told apart by its other side alone
     doubt = f"walled up, {p:.2f}: flush with the one side that was seen" if is_flush else ""
-    return tell(SHUT, _rate_shut(views), doubt)
+    # what its own plan holds for no opening may be beside furniture that was carried
+    is_held = opening.p_true >= 1 / 2
+    return tell(SHUT, _rate_shut(views) * (1.0 if is_held else opening.p_true), doubt)
 
 
 def _rate_shut(views: Views) -> float:

@@ -20,13 +20,27 @@ _FLANK_M = 0.6  # of wall beside an opening
 
 @dataclass(frozen=True, eq=False)
 class Opening:
-    """An opening in the common frame; `half_m` is half of its wall's thickness."""
+    """An opening in the common frame.
+
+    Attributes
+    ----------
+    number : int
+    kind : str
+    line : Line
+        From its first end on.
+    width_m : float
+    half_m : float
+        Half of its wall's thickness.
+    p_true : float
+        How likely its own plan holds it.
+    """
 
     number: int
     kind: str
     line: Line
     width_m: float
     half_m: float
+    p_true: float = 1.0
 
     @property
     def ends_m(self) -> FloatArray:

@@ -9,7 +9,7 @@ from scanplan.changes.verdicts import CHANGES, SAME, STATES
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.report.templates import render_template
-from scanplan.types import Columns
+from scanplan.types import BoolArray, Columns
 from scanplan.validation.doubts import list_to_verify
 
 Row = dict[str, Any]
@@ -58,13 +58,19 @@ def _count_changes(changes: Columns | None) -> Row:
     is_same_wall = (verdict == SAME) & (element == "wall")
     return {
         **{
-            name: int((changes["likely"] & (element == table)).sum())
+            name: _count_elements(changes, changes["likely"] & (element == table))
             for name, table in zip(names, _COUNTED.values(), strict=True)
         },
         "doors_swung": int(np.isin(verdict, STATES).sum()),
         "doubtful_changes": int((is_change & ~changes["likely"]).sum()),
         "unchanged_wall_m": round(float(changes["length_m"][is_same_wall].sum()), 2),
     }
+
+
+def _count_elements(changes: Columns, rows: BoolArray) -> int:
+    """Return of how many elements some rows are: a wall may have several."""
+    numbers = np.column_stack([changes["number_a"][rows], changes["number_b"][rows]])
+    return len(np.unique(numbers, axis=0))
 
 
 def format_page(rows: Sequence[Row], sources: Mapping[str, str]) -> str:
