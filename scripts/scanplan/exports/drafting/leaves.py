@@ -77,7 +77,6 @@ def draw_swing(door: Symbol, leaves: Leaves) -> Symbol:
     ----------
     door : Symbol
         In the middle of its wall.
-    leaves : Leaves
     """
     middles_m = leaves.lines_m[leaves.is_sliding].mean(axis=1)
     if (np.hypot(*(middles_m - door.ends_m.mean(axis=0)).T) <= HINGE_M).any():
