@@ -205,6 +205,8 @@ def test_a_recording_is_opened_while_its_run_makes_the_plan(tmp_path, monkeypatc
     monkeypatch.setattr(os, "environ", dict(os.environ))
     monkeypatch.setattr(EditServer, "serve_forever", lambda _: None)
     monkeypatch.setattr(ServedRun, "begin", lambda _, asked: begun.append(asked))
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a/my.bag").touch()
     assert command.main(["a/my.bag", "--open", "--no-browser", "--cores", "3"]) == 0
     (asked,) = begun
     assert asked[: len(command._SNAKEMAKE)] == [*command._SNAKEMAKE]
@@ -217,7 +219,10 @@ def test_a_recording_is_opened_while_its_run_makes_the_plan(tmp_path, monkeypatc
 def test_the_results_of_what_is_opened_bear_its_name(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert str(command.find_results(["demo"])) == "results/demo"
+    (tmp_path / "a/ground floor").mkdir(parents=True)
     assert str(command.find_results(["a/ground floor"])) == "results/ground_floor"
+    with pytest.raises(StageError, match=r"^none\.bag: does not exist; name a recording"):
+        command.find_results(["none.bag"])
 
 
 @pytest.mark.parametrize("given", [["a.bag", "b.bag"], ["diff"], ["floors.tsv"]])

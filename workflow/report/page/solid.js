@@ -80,7 +80,7 @@ const solid = (() => {
     scene.points.geometry.dispose();
     scene.points.geometry = cloud;
     const number = (m) => m.toLocaleString("en");
-    note.textContent = `${data.heights} ${number(n)} of ${number(nAll)} points. Changes are shown here once the plan is made anew.`;
+    note.textContent = `${data.heights} ${number(n)} of ${number(nAll)} points. Orange is to be verified. Changes are shown here once the plan is made anew.`;
     draw();
   }
   async function readPoints() {
@@ -117,7 +117,7 @@ const solid = (() => {
     await readLibrary();
     const [, , width, depth] = plan.getAttribute("viewBox").split(" ").map(Number);
     const middle = [data.low_m[0] + width / 2, data.low_m[1] + depth / 2, 0];
-    scene = { middle, size: Math.hypot(width, depth), corners: new Map(), cut: null };
+    scene = { middle, extent: [width, depth], size: Math.hypot(width, depth), corners: new Map(), cut: null };
     scene.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     scene.camera = new THREE.PerspectiveCamera(45, 1, scene.size / 500, scene.size * 10);
     scene.camera.up.set(0, 0, 1);
@@ -164,8 +164,9 @@ const solid = (() => {
   }
   // as near as all of it is seen, in a wide view and in a narrow one
   function lookAtAll() {
-    const far = 0.62 * scene.size * Math.max(1, 1.4 / (view.clientWidth / view.clientHeight));
-    look([0, -far, 1.1 * far], [0, 0, 0]);
+    const [width, depth] = scene.extent;
+    const far = Math.max((1.2 * width * view.clientHeight) / view.clientWidth, 0.9 * depth) + depth / 2;
+    look([0, -0.67 * far, 0.74 * far], [0, 0, 0]);
   }
   function turn(aside, up) {
     const { camera, controls } = scene;

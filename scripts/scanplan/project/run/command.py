@@ -102,11 +102,13 @@ def find_results(recordings: Sequence[str]) -> Path:
     Raises
     ------
     StageError
-        If there is not one alone, or it has no name.
+        If there is not one alone, it has no name, or is not there.
     """
     if len(recordings) > 1 or recordings[0] == DIFF or dataset_list.is_list(recordings[0]):
         raise StageError("--open shows one floor; name one recording, or a folder of one floor's")
     is_demo = recordings == [DEMO]
+    if not is_demo and not Path(recordings[0]).exists():
+        raise StageError(f"{recordings[0]}: does not exist; name a recording, or their folder")
     return Path("results", DEMO if is_demo else dataset_files.dataset_name(recordings[0]))
 
 
