@@ -11,8 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from scanplan.project.run.run_status import STATUS, RunStatus, ToldStage, read_status
+from scanplan.project.texts import cut_line
 
-_MOST_LETTERS = 200  # of a line of the run that a page shows
+_MOST_LETTERS = 120  # of a line of the run that a page shows
+_MOST_OF_FAULT = 400  # of why it failed: the remedy stands at the end
 _LEFT = re.compile(r", (\d+) s left$")
 """What a stage's own progress ends with while it is at work."""
 Seconds = Mapping[str, float]
@@ -152,7 +154,7 @@ class ServedRun:
     def _find_fault(self) -> str:
         told = [line for line in self.lines if line.startswith("scanplan: ")]
         fault = told[-1] if told else "the run ended without a word"
-        return fault.removeprefix("scanplan: ")[:_MOST_LETTERS]
+        return fault.removeprefix("scanplan: ")[:_MOST_OF_FAULT]
 
     def _listen(self, run: subprocess.Popen[str], left: Sequence[Path]) -> None:
         with run:
@@ -180,7 +182,7 @@ def list_stages(status: RunStatus, own_s: Seconds, others_s: Seconds) -> list[di
     def show(stage: ToldStage, state: str) -> dict[str, Any]:
         left_s = _find_left(stage, expected) if state == "at work" else 0.0
         told = {"name": stage.name, "state": state, "took_s": stage.took_s, "left_s": left_s}
-        return {**told, "said": stage.said[:_MOST_LETTERS]}
+        return {**told, "said": cut_line(stage.said, _MOST_LETTERS)}
 
     shown = [show(stage, "done") for stage in status.ended]
     shown += [show(stage, "failed") for stage in status.failed]
@@ -233,5 +235,5 @@ def _describe(status: RunStatus) -> str:
     if status.at_work:
         return " and ".join(f"{stage.name} {stage.said}".strip() for stage in status.at_work)
     if status.ended:
-        return f"{status.ended[-1].name}: {status.ended[-1].said}"[:_MOST_LETTERS]
+        return cut_line(f"{status.ended[-1].name}: {status.ended[-1].said}", _MOST_LETTERS)
     return "Working out what is to be done"
