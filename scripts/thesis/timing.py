@@ -13,13 +13,12 @@ import shapely
 from numpy.typing import ArrayLike
 
 from scanplan.extraction import extractors
-from scanplan.extraction.extractors import Extractor
 from scanplan.geometry import overlays
 from scanplan.plan.faces.merging import MergeSettings, merge_segments
 from scanplan.selection import area_greedy, hulls
 from scanplan.stage import per_registered_scan
 from scanplan.store import tables
-from scanplan.types import Array, Columns, FilePath, IntArray, Settings
+from scanplan.types import Array, Columns, FilePath, IntArray
 from thesis.claim_measures import CHOOSING, LITERAL, MERGING, ORDERING, THINNED
 from thesis.shown_figures import THESIS_SCANS
 from thesis.stated_claims import Sizes
@@ -40,10 +39,9 @@ def spread_rows(rows: ArrayLike, count: int) -> IntArray:
 
 def time_extractor(
     task: str,
-    method: Extractor,
+    finder: extractors.WallFinder,
     store: tables.ScanStore,
     scan_ids: IntArray,
-    settings: Settings,
     registration: FilePath,
     *,
     part: int = 1,
@@ -57,8 +55,6 @@ def time_extractor(
     task : str
         Its name in the table.
     scan_ids : (n,) int
-    settings : dict
-        Those of the method among them.
     registration : path-like
         registration.parquet.
     part : int
@@ -70,8 +66,6 @@ def time_extractor(
         `size` is the scan's number of points, `item` its scan_id, `found` its walls.
     """
     sensors = per_registered_scan.sensor_keywords(scan_ids, store.path, registration)
-    own = extractors.select_settings(method.settings, settings)
-    finder = extractors.WallFinder(method, own, store.planar)
     for number, (scan_id, xyz_m) in enumerate(store.scans(scan_ids)):
         xyz_m = thin_points(xyz_m, part, scan_id)
         call = partial(

@@ -9,7 +9,7 @@ from helpers import toy_rooms
 from helpers.default_settings import SETTINGS
 from helpers.wall_making import observed
 from reference import hull_selection as reference
-from scanplan.extraction.extractors import Extractor
+from scanplan.extraction.extractors import Extractor, WallFinder
 from scanplan.extraction.segments import SegmentLimits
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.project import stage_settings
@@ -103,9 +103,9 @@ def test_a_disturbed_call_does_not_count(tmp_path, monkeypatch):
     at = {"sensor_xyz_m": np.zeros(3)}
     monkeypatch.setattr(timing.per_registered_scan, "sensor_keywords", lambda *_: {0: at, 3: at})
     store = tables.ScanStore(tmp_path / "scans.parquet")
-    busy = Extractor(SegmentLimits, Busy().extract)
-    given = {**toy_rooms.LIMITS, "max_rmse_m": 0.025}
-    rows = list(timing.time_extractor("busy", busy, store, [0, 3], given, "registration.parquet"))
+    limits = SegmentLimits(**toy_rooms.LIMITS)
+    busy = WallFinder(Extractor(SegmentLimits, Busy().extract), limits, planar=False)
+    rows = list(timing.time_extractor("busy", busy, store, [0, 3], "registration.parquet"))
     assert [(row["item"], row["size"], row["found"]) for row in rows] == [(0, 5, 1), (3, 5, 1)]
     assert all(0.001 <= row["seconds"] < 0.04 for row in rows)
 

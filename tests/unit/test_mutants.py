@@ -54,25 +54,41 @@ def test_the_same_seed_draws_the_same_places(tmp_path):
 
 
 SOURCE = "def is_wide(a):\n    return a > 1\n"
-TEST = """import sys
-sys.path.insert(0, "scripts")
-from a import is_wide
+ANYWAY, OF_IT = "tests/test_a.py::test_anyway", "tests/test_a.py::test_of_it"
 
-def test_fails_anyway():
-    assert not is_wide(1) and False
 
-def test_of_it():
-    assert {assertion}
-"""
+@pytest.mark.parametrize("told", [OF_IT, ""])
+def test_a_test_counts_that_the_change_fails_alone(tmp_path, monkeypatch, told):
+    def fail(root, words, marks):
+        is_changed = (root / "a.py").read_text() != SOURCE
+        failing = [ANYWAY, *([told] if told and is_changed else [])]
+        asked = [name for name in failing if f"--deselect={name}" not in words]
+        return next((name for name in asked if words[0] in (name, "tests")), "")
+
+    monkeypatch.setattr(mutants, "_first_failure", fail)
+    (tmp_path / "a.py").write_text(SOURCE)
+    (mutant,) = (m for m in mutants.list_mutants("a.py", SOURCE) if ">=" in m.new)
+    assert mutants.try_mutant(mutant, tmp_path, ["tests"], mutants.QUICK) == told
+    assert (tmp_path / "a.py").read_text() == SOURCE
+
+
+def test_the_test_that_fails_first_is_named(tmp_path):
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests/test_a.py").write_text("def test_of_it():\n    assert 1 > 2\n")
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = -ra\n")
+    assert mutants._first_failure(tmp_path, ["tests"], mutants.QUICK) == OF_IT
 
 
 @pytest.mark.parametrize(
-    ("assertion", "told"), [("not is_wide(1)", "tests/test_a.py::test_of_it"), ("is_wide(2)", "")]
+    ("words", "read"),
+    [([], (60, 1, False)), (["6"], (6, 1, False)), (["--full", "6", "2"], (6, 2, True))],
 )
-def test_a_test_counts_that_the_change_fails_alone(tmp_path, assertion, told):
-    for name, text in {"scripts/a.py": SOURCE, "tests/test_a.py": TEST}.items():
-        (tmp_path / name).parent.mkdir()
-        (tmp_path / name).write_text(text.replace("{assertion}", assertion))
-    (mutant,) = (m for m in mutants.list_mutants("scripts/a.py", SOURCE) if ">=" in m.new)
-    assert mutants.try_mutant(mutant, tmp_path, ["tests/test_a.py"], mutants.QUICK) == told
-    assert (tmp_path / "scripts/a.py").read_text() == SOURCE
+def test_words_of_the_command(words, read):
+    assert mutants.read_words(words) == read
+
+
+@pytest.mark.parametrize("words", [["--help"], ["six"], ["1", "2", "3"]])
+def test_wrong_words_end_in_a_line(words):
+    with pytest.raises(SystemExit) as refused:
+        mutants.read_words(words)
+    assert words[-1] in refused.value.code

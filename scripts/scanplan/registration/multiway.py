@@ -261,7 +261,9 @@ def choose_pairs(
     if planar:
         clouds_m = list(thinned.part(range(len(thinned))))
         visits = loops.choose_shared_views(
-            *(clouds_m, world_from_scan, is_station),
+            clouds_m,
+            world_from_scan,
+            is_station,
             apart=apart,
             least=settings.loop_min_fitness,
             most=most,

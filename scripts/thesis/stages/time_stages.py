@@ -5,6 +5,7 @@ from itertools import chain
 
 import numpy as np
 
+from scanplan.extraction import extractors
 from scanplan.extraction.extractors import EXTRACTORS
 from scanplan.plan.faces.merging import MergeSettings
 from scanplan.stage import log
@@ -74,12 +75,12 @@ def time_stages(
     ]
     for task in _EXTRACTORS if whole else [PLAIN_CLUSTERS]:
         name = _EXTRACTORS[task]
-        calls = (task, EXTRACTORS[name], store)
-        of_task = (walls[name], registration)
-        times.append(timing.time_extractor(*calls, timed_ids, *of_task))
+        own = extractors.select_settings(EXTRACTORS[name].settings, walls[name])
+        finder = extractors.WallFinder(EXTRACTORS[name], own, store.planar)
+        times.append(timing.time_extractor(task, finder, store, timed_ids, registration))
         if whole:
             few_ids = timing.spread_rows(timed_ids, max(timed_scans // _FEWER, 2))
-            times.append(timing.time_by_points(*calls, few_ids, *of_task))
+            times.append(timing.time_by_points(task, finder, store, few_ids, registration))
     if whole:
         columns = tables.read_table(built, schemas.HULLS)
         found = tables.read_table(segments, schemas.WALLS, allow_empty=True)

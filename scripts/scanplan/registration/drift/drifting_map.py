@@ -145,7 +145,11 @@ class _DriftingGraph:
     ) -> list[PoseConstraint]:
         """Align scans that are near each other, as where a localiser placed them."""
         return multiway.align_visits(
-            *(self._scan_ids, self.poses, self.sequence, thinned, run),
+            self._scan_ids,
+            self.poses,
+            self.sequence,
+            thinned,
+            run,
             planar=self._planar,
             limits=self._limits,
             settings=self._settings,
