@@ -27,6 +27,7 @@ from house_finds import (
     find_long_lines,
     find_long_parameter_lists,
     find_numeric_constants,
+    find_prose_tests,
     find_public_functions,
     has_reason,
     is_annotated,
@@ -36,7 +37,14 @@ from house_finds import (
     read_modules,
     read_texts,
 )
-from house_shapes import MOST_PARAMETERS, RUN_LINES, Function, find_chain, find_repeated
+from house_shapes import (
+    MOST_PARAMETERS,
+    PHRASE_WORDS,
+    RUN_LINES,
+    Function,
+    find_chain,
+    find_repeated,
+)
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -63,6 +71,7 @@ class Figures:
     public_annotated: float
     lines_over_100: int
     duplicate_names: int
+    prose_tests: int
     type_errors: int | None = None
 
 
@@ -85,6 +94,7 @@ MEANINGS = {
     "public_annotated": "share of these fully annotated",
     "lines_over_100": f"lines over {MAX_COLUMNS} columns",
     "duplicate_names": "public functions named as one of another module",
+    "prose_tests": f"tests that hold a phrase of {PHRASE_WORDS} words or more",
     "type_errors": "errors of basedpyright",
 }
 
@@ -120,6 +130,7 @@ def count_house(checkout: Path, *, types: bool = False) -> Figures:
         public_annotated=sum(map(is_annotated, public)) / len(public),
         lines_over_100=len(find_long_lines(modules)),
         duplicate_names=len(find_duplicate_names(modules)),
+        prose_tests=len(find_prose_tests(read_modules(checkout / "tests"))),
         type_errors=count_type_errors(checkout) if types else None,
     )
 
@@ -179,6 +190,7 @@ def format_places(checkout: Path) -> str:
         MEANINGS["fractions"]: list_fractions(modules),
         MEANINGS["longest_chain"]: list_chains(modules)[:20],
         MEANINGS["long_parameter_lists"]: find_long_parameter_lists(modules),
+        MEANINGS["prose_tests"]: find_prose_tests(read_modules(checkout / "tests")),
         MEANINGS["equal_lines"]: [f"{name} ({n})" for name, n in sorted(repeated.items())],
     }
     return "\n\n".join("\n  ".join([f"{head}:", *lines]) for head, lines in parts.items())

@@ -13,6 +13,7 @@ import yaml
 from house_shapes import (
     MOST_PARAMETERS,
     Function,
+    asserts_prose,
     count_parameters,
     find_chain,
     find_fractions,
@@ -115,6 +116,16 @@ def find_long_parameter_lists(modules: list[Module]) -> list[str]:
         for module in modules
         for node in ast.walk(module.tree)
         if isinstance(node, Function) and count_parameters(node) > MOST_PARAMETERS
+    ]
+
+
+def find_prose_tests(modules: list[Module]) -> list[str]:
+    """Return `file:line name` of tests that hold what is said word by word."""
+    return [
+        f"{module.path}:{node.lineno} {node.name}"
+        for module in modules
+        for node in ast.walk(module.tree)
+        if isinstance(node, Function) and node.name.startswith("test_") and asserts_prose(node)
     ]
 
 

@@ -6,14 +6,18 @@ Nothing is judged here: `house_figures` prints what is counted.
 import ast
 import io
 import keyword
+import re
 import tokenize
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
+from typing import TypeGuard
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 MOST_PARAMETERS = 6  # a reader keeps some seven things in mind
+PHRASE_WORDS = 3  # fewer are names, keys or a remedy
 RUN_LINES = 6  # what is shorter is alike by chance: an argument a line, a loop of three
+_WORD = re.compile(r"[A-Za-z]{2,}")
 _LAYOUT = (tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.COMMENT)
 
 
@@ -80,6 +84,27 @@ def find_fractions(function: Function) -> Iterator[ast.Constant]:
         match node:
             case ast.Constant(value=float(number)) if not number.is_integer():
                 yield node
+
+
+def asserts_prose(test: Function) -> bool:
+    """Return whether a test holds a phrase of three words or more: in an assertion, or a match."""
+    held = [node.test for node in ast.walk(test) if isinstance(node, ast.Assert)]
+    held += [node.value for node in ast.walk(test) if _is_match(node)]
+    matches = {node.id for node in held if isinstance(node, ast.Name)}
+    if matches & {part.arg for part in test.args.args}:
+        held += test.decorator_list
+    return any(map(_is_phrase, (node for part in held for node in ast.walk(part))))
+
+
+def _is_match(node: ast.AST) -> TypeGuard[ast.keyword]:
+    return isinstance(node, ast.keyword) and node.arg == "match"
+
+
+def _is_phrase(node: ast.AST) -> bool:
+    match node:
+        case ast.Constant(value=str(text)):
+            return " " in text.strip() and len(_WORD.findall(text)) >= PHRASE_WORDS
+    return False
 
 
 def find_repeated(files: Mapping[str, str], *, by_shape: bool) -> dict[str, int]:

@@ -187,3 +187,25 @@ def test_places_of_what_is_counted_are_told(checkout):
     text = house_figures.format_places(checkout)
     for place in ("plan.advanced.voxel_m", "assemble_plan.py:1 X_M", "scanplan/plan/walls.py:3"):
         assert f"\n  {place}" in text
+
+
+@pytest.mark.parametrize(
+    ("body", "is_prose"),
+    [
+        ('assert told == "3 of 4 walls were seen"', True),
+        ('assert told == "walls_m" and "run again" in told', False),
+        ('with raises(StageError, match="does not exist any more"): read()', True),
+        ('with raises(StageError, match=f"{path}: .* --config"): read()', False),
+        ('print("what is asserted nowhere")', False),
+    ],
+)
+def test_tests_of_wording_are_found(body, is_prose):
+    (test,) = ast.parse(f"def test_of_it():\n    {body}\n").body
+    assert house_shapes.asserts_prose(test) == is_prose
+
+
+def test_phrases_of_parameters_count_where_they_are_matched():
+    text = '@parametrize("said", ["no scan was kept"])\ndef test_it(said):\n    '
+    (matched,) = ast.parse(text + "with raises(E, match=said): read()").body
+    (other,) = ast.parse(text + "read(said)").body
+    assert house_shapes.asserts_prose(matched) and not house_shapes.asserts_prose(other)
