@@ -101,7 +101,7 @@ def test_no_plan_of_no_scans(k):
 
 def test_more_scans_than_there_are():
     k, reason = stopping.choose_n_scans({"covered_m2": np.array([1.0, 2.0])}, n_scans=5)
-    assert k == 2 and "5 were asked for" in reason
+    assert k == 2 and "5" in reason
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ def test_number_and_reason(limits, k, reason):
 def test_a_share_is_of_the_method_s_own_measure():
     own = {**COLUMNS, "covered": np.array([5.0, 6.0, 7.0, 8.0, 10.0])}
     k, reason = stopping.choose_n_scans(own, area_share=0.8)
-    assert k == 4 and reason.startswith("4 of 5 scans show 80 %")
+    assert k == 4 and "4 of 5" in reason and "80 %" in reason
     assert (
         stopping.choose_n_scans({**COLUMNS, "covered": COLUMNS["covered_m2"]}, area_share=0.8)[0]
         == 2
@@ -154,9 +154,7 @@ def test_a_late_scan_that_adds_much_is_not_lost_in_an_order_without_greed():
 
 
 def test_a_budget_below_the_first_scan_is_told():
-    with pytest.raises(
-        StageError, match="max_points: the first scan has 1,000 points, the budget is 999; raise it"
-    ):
+    with pytest.raises(StageError, match=r"max_points: .*1,000.*999; raise"):
         stopping.choose_n_scans(COLUMNS, max_points=999)
 
 

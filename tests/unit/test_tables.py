@@ -62,7 +62,7 @@ def test_scans_are_read_one_by_one(scans):
     np.testing.assert_array_equal(store.read(9), [[1, 1, 1]])
     assert [scan_id for scan_id, _ in store.scans([9, 3])] == [9, 3]
     assert store.read(3).dtype == np.float32
-    with pytest.raises(StageError, match="no scan 4, which"):
+    with pytest.raises(StageError, match=r"scans\.parquet: .*\b4\b"):
         store.read(4)
 
 
@@ -84,19 +84,19 @@ def write_anew(path, keep, lost=None):
 )
 def test_rows_that_another_program_took_out_or_added_are_missed(scans, keep, n_left):
     write_anew(scans, keep)
-    with pytest.raises(StageError, match=f"was written with 3 rows, holds {n_left}: another"):
+    with pytest.raises(StageError, match=rf"scans\.parquet: .*\b3 rows.*\b{n_left}\b"):
         tables.ScanStore(scans)
 
 
 def test_a_program_that_loses_their_number_is_noticed_too(scans):
     write_anew(scans, lambda groups: groups, b"scanplan_rows")
-    with pytest.raises(StageError, match="was written with an unknown number of rows, holds 3"):
+    with pytest.raises(StageError, match=r"scans\.parquet: .*\b3\b"):
         tables.ScanStore(scans)
 
 
 def test_a_store_without_scans_does_not_appear(tmp_path):
     with (
-        pytest.raises(StageError, match="no scan was kept"),
+        pytest.raises(StageError, match=r"s\.parquet: .*kept"),
         tables.open_scan_writer(tmp_path / "s.parquet", planar=False),
     ):
         pass
@@ -170,7 +170,7 @@ def test_a_table_that_memory_does_not_hold_is_not_called_damaged(tmp_path):
         capture_output=True,
         text=True,
     ).stdout
-    assert said.startswith(f"{path}: not enough memory to read it (")
+    assert said.startswith(f"{path}: ") and "memory" in said
     assert said.count("\n") == 1 and "`ulimit -v`" in said
 
 
@@ -184,7 +184,7 @@ def test_a_truncated_file_is_refused(selection, size):
 def test_another_table_or_no_table_is_refused(selection, tmp_path):
     with pytest.raises(StageError, match="expected poses"):
         tables.read_table(selection, schemas.POSES)
-    with pytest.raises(StageError, match="does not exist"):
+    with pytest.raises(StageError, match=r"none\.parquet: "):
         tables.read_table(tmp_path / "none.parquet", schemas.POSES)
 
 
@@ -224,13 +224,13 @@ def misstate_rows_of_a_part(path):
 
 def test_parts_that_lie_about_their_rows_are_noticed(selection):
     misstate_rows_of_a_part(selection)
-    with pytest.raises(StageError, match=r"selection.parquet: damaged \(states 3 rows, its parts "):
+    with pytest.raises(StageError, match=r"selection\.parquet: damaged .*\b3 rows"):
         tables.read_table(selection, schemas.SELECTION)
 
 
 def test_scans_that_lie_about_their_rows_are_noticed(scans):
     misstate_rows_of_a_part(scans)
-    with pytest.raises(StageError, match=r"scans.parquet: damaged \(states 3 rows, its parts "):
+    with pytest.raises(StageError, match=r"scans\.parquet: damaged .*\b3 rows"):
         tables.ScanStore(scans)
 
 
@@ -285,7 +285,7 @@ def test_a_spoilt_footer_is_noticed(selection, before, after):
     content = selection.read_bytes()
     assert before in content
     selection.write_bytes(content.replace(before, after))
-    with pytest.raises(StageError, match=r"selection.parquet: .*delete it and run again"):
+    with pytest.raises(StageError, match=r"selection.parquet: .*delete it"):
         tables.read_table(selection, schemas.SELECTION)
 
 
@@ -294,7 +294,7 @@ def test_spoilt_notes_of_scans_are_noticed(scans, before, after):
     content = scans.read_bytes()
     assert before in content
     scans.write_bytes(content.replace(before, after))
-    with pytest.raises(StageError, match=r"scans.parquet: damaged .*delete it and run again"):
+    with pytest.raises(StageError, match=r"scans.parquet: damaged .*delete it"):
         tables.ScanStore(scans)
 
 
@@ -304,7 +304,7 @@ def test_a_spoilt_note_is_noticed(tmp_path):
     assert tables.read_note(path, schemas.SELECTION, "floor_z_m") == "0.125"
     assert tables.read_note(path, schemas.SELECTION, "ceiling_z_m") == ""
     path.write_bytes(path.read_bytes().replace(b"0.125", b"4.125"))
-    with pytest.raises(StageError, match=r"notes do not fit their checksum"):
+    with pytest.raises(StageError, match=r"noted\.parquet: .*checksum"):
         tables.read_note(path, schemas.SELECTION, "floor_z_m")
 
 
@@ -312,5 +312,5 @@ def test_points_that_are_no_numbers_are_noticed(tmp_path):
     path = tmp_path / "scans.parquet"
     with tables.open_scan_writer(path, planar=True) as write:
         write(3, np.array([[0.0, np.nan, 0.0]]))
-    with pytest.raises(StageError, match=r"scan 3 has no points, or some that are no numbers"):
+    with pytest.raises(StageError, match=r"scans\.parquet: .*scan 3\b"):
         tables.ScanStore(path).read(3)

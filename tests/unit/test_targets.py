@@ -27,7 +27,7 @@ def test_faults_are_told_in_one_line(target, told):
 
 
 def test_a_target_that_would_steer_a_terminal_is_refused():
-    with pytest.raises(StageError, match="in its name; rename it"):
+    with pytest.raises(StageError, match="; rename it"):
         check_targets(["results/\x1b[31m"], ["demo"], FOLDERS)
 
 
@@ -52,7 +52,7 @@ def test_what_the_laboratory_alone_makes_asks_for_it(word):
 
 def test_what_another_workflow_makes_is_told_with_how_to_run_it():
     for target in ("comparison", "results/demo/comparison.html", "results/thesis/report.html"):
-        with pytest.raises(StageError, match=f"{target}: .* give `-s lab/Snakefile`"):
+        with pytest.raises(StageError, match=f"{target}: .*`-s lab/Snakefile`"):
             check_targets([target], ["demo"], FOLDERS, laboratory="lab/Snakefile")
     check_targets(["all", "results/demo/report.html"], ["demo"], FOLDERS, laboratory="lab")
 
