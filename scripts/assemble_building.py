@@ -13,7 +13,8 @@ from scanplan.exports.building.placed_storey import PlacedStorey
 from scanplan.exports.building.sheet_set import compose_sheets
 from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.composition import Sheet
-from scanplan.exports.sheet.title import summarise_survey
+from scanplan.exports.sheet.locale import make_locale
+from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.plan import floorplan_files
 from scanplan.project import building_file, code_files
 from scanplan.stage import figure_files, log
@@ -28,6 +29,7 @@ def assemble_building(
     name: str,
     storeys: Sequence[Mapping[str, Any]],
     settings: Sequence[Settings],
+    receivers: Sequence[Mapping[str, Any]] | None = None,
     version: str = "",
 ) -> None:
     """Write building.ifc, building.dxf and building.pdf.
@@ -45,6 +47,9 @@ def assemble_building(
         What `building_file.Storey` says of each, by name.
     settings : sequence of dict
         What `export_plan` is told of each; the lowest storey's `turn` and `dxf_unit` hold for all.
+    receivers : sequence of dict, optional
+        See `words_file.read_receiver`, of each storey; layers are the lowest one's. English
+        and our layers if not given.
     version : str
         Of the software, for the title blocks.
 
@@ -70,10 +75,16 @@ def assemble_building(
         )
         for storey, path, elevation_m in zip(storeys, files["ifc"], elevations_m, strict=True)
     ]
-    sheets = _compose_sheets(files, name, storeys, settings, version)
+    told = receivers or [{}] * len(storeys)
+    locales = [
+        make_locale(own["units"], of.get("words")) for own, of in zip(settings, told, strict=True)
+    ]
+    sheets = _compose_sheets(
+        files, name, storeys, settings, [SheetFacts(version=version, locale=of) for of in locales]
+    )
     figures = [drawing.draw_sheet(sheet) for sheet in sheets]
     atomic.write_text(outputs["ifc"], merge_ifc(name, placed))
-    drawn = format_building_dxf(placed, sheets, settings[0]["dxf_unit"])
+    drawn = format_building_dxf(placed, sheets, settings[0]["dxf_unit"], told[0].get("layers"))
     atomic.write_text(outputs["dxf"], drawn)
     pages = figure_files.format_pdf(figures, f"Floor plans of {name}")
     atomic.write_bytes(outputs["pdf"], pages)
@@ -90,16 +101,23 @@ def _compose_sheets(
     name: str,
     storeys: Sequence[Mapping[str, Any]],
     settings: Sequence[Settings],
-    version: str,
+    common: Sequence[SheetFacts],
 ) -> list[Sheet]:
-    """Return a sheet of each storey, with the names that the building gives it."""
+    """Return a sheet of each storey, with the names that the building gives it.
+
+    Parameters
+    ----------
+    common : sequence of SheetFacts
+        The software and the locale of each storey's sheet.
+    """
     plans, facts = [], []
     for number, (storey, own) in enumerate(zip(storeys, settings, strict=True)):
         paths = {table: files[table][number] for table in files if table != "ifc"}
         assumed_m = {key: own[key] for key in ("assumed_thickness_m", "assumed_height_m")}
         plans.append(floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m))
         evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
-        stated = {"project": own["project"] or name, "storey": storey["name"], "version": version}
+        stated = {"project": own["project"] or name, "storey": storey["name"]}
+        stated |= {"version": common[number].version, "locale": common[number].locale}
         sheet = {"number": number + 1, "of": len(storeys)}
         sensor = SensorErrors(own["range_offset_sigma_m"], own["range_scale_sigma"])
         facts.append(summarise_survey(evidence, **stated, **sheet, sensor=sensor))

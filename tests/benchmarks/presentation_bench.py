@@ -1,6 +1,8 @@
 """Regular drawings of simulated drives against their truths, beside what was measured."""
 
+import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,8 @@ import shapely
 
 from scanplan.exports.drafting.regular_plan import MEASURED, draft_plan, make_draft_settings
 from scanplan.lab.evaluation.scores import drawn_plan, plan_scores, score_files
+from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
+from scanplan.lab.evaluation.scores.scene import TrueOpenings
 from scanplan.lab.evaluation.scores.score_files import Placed
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
@@ -16,11 +20,14 @@ from scanplan.types import Columns, FloatArray, IntArray, Settings
 
 _SHOWN = (
     *("room_iou", "wall_correctness_010", "wall_completeness_010", "thickness_error_m"),
-    *("angle_deg", "true_thickness"),
+    *("angle_deg", "true_thickness", "true_door", "door_off_m", "true_window", "window_off_m"),
 )
 _LONG_M = 1.0  # a shorter wall has hardly a direction
 _NEAR_M = 0.1  # as far as a wall counts as drawn right
 _BESIDE_DEG = 5.0  # of the true wall that a drawn one is held against
+_TRUE_KINDS = {"door": ("door", "passage"), "window": ("window",)}
+_JAMB_M = 0.3  # from the middle of a true opening to that of a drawn one
+_WIDTH_M = 0.01  # of a width that is the true one: half of what sizes of a catalogue are apart
 _ALIKE_M = 0.0015  # of a thickness that is the true one: what tables are rounded to, and a little
 _TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture")
 
@@ -55,7 +62,9 @@ def bench(results: Path, truths: Path, names: Sequence[str], settings: Settings)
         plan = floorplan_files.read_floorplan(files, name)
         regular, drafted = draft_plan(plan, drafting)
         measured = score_files.read_plan(results / name)
-        rows.append([_measure(t, placed) for t in (measured, _replace(measured, regular))])
+        clear = _narrow_by_frames(placed.scene.openings, truth / "truth.geojson")
+        both = (measured, _replace(measured, regular))
+        rows.append([_measure(tables, placed, clear) for tables in both])
         print(f"{name}: {_format(rows[-1])}, moved by {1000 * drafted.moved_m:.0f} mm", flush=True)
     means = [
         {key: float(np.nanmean([row[number][key] for row in rows])) for key in _SHOWN}
@@ -77,7 +86,27 @@ def _replace(tables: Mapping[str, Columns], regular: FloorPlan) -> dict[str, Col
     return {**tables, "faces": regular.faces, "rooms": regular.rooms, **changed}
 
 
-def _measure(tables: Mapping[str, Columns], placed: Placed) -> dict[str, float]:
+def _narrow_by_frames(true: TrueOpenings, file: Path) -> TrueOpenings:
+    """Return openings between their frames, as scans see them and a catalogue has them."""
+    drawn = [
+        (np.array(feature["geometry"]["coordinates"]), feature["properties"].get("frame_m", 0.0))
+        for feature in json.loads(file.read_text())["features"]
+        if feature["properties"]["kind"] == "opening"
+    ]
+    middles_m = np.array([line_m.mean(axis=0) for line_m, _ in drawn]).reshape(-1, 2)
+    lines_m = true.lines_m.copy()
+    for line_m in lines_m:
+        apart_m = np.hypot(*(middles_m - line_m.mean(axis=0)).T)
+        frame_m = drawn[int(np.argmin(apart_m))][1] if len(drawn) else 0.0
+        way_m = line_m[1] - line_m[0]
+        in_m = frame_m * way_m / np.hypot(*way_m)
+        line_m += np.stack([in_m, -in_m])
+    return replace(true, lines_m=lines_m)
+
+
+def _measure(
+    tables: Mapping[str, Columns], placed: Placed, clear: TrueOpenings
+) -> dict[str, float]:
     scored = plan_scores.score_plan(tables, placed.motion, placed.scene, placed.seen)
     plan, scene = drawn_plan.place_plan(tables, placed.motion), placed.scene
     true_faces_m = np.concatenate([scene.inner_m, scene.outer_m])
@@ -92,7 +121,24 @@ def _measure(tables: Mapping[str, Columns], placed: Placed) -> dict[str, float]:
         **scored.measures,
         "angle_deg": _mean(off_deg, lengths_m),
         "true_thickness": _mean(is_true, walls_m),
+        **_measure_widths(plan, clear),
     }
+
+
+def _measure_widths(plan: DrawnPlan, true: TrueOpenings) -> dict[str, float]:
+    """Return the share of doors and windows as wide as the true one there, and the median error."""
+    found: dict[str, float] = {}
+    for kind, true_kinds in _TRUE_KINDS.items():
+        drawn_m = plan.openings_m[np.asarray(plan.type == kind, bool)]
+        true_m = true.lines_m[np.isin(true.type, true_kinds)]
+        widths_m, true_widths_m = (np.hypot(*(m[:, 1] - m[:, 0]).T) for m in (drawn_m, true_m))
+        off = drawn_m.mean(axis=1)[:, None] - true_m.mean(axis=1)
+        apart_m = np.hypot(off[..., 0], off[..., 1])
+        rows = np.flatnonzero((apart_m < _JAMB_M).any(axis=1))
+        by_m = widths_m[rows] - true_widths_m[apart_m[rows].argmin(axis=1)] if len(rows) else rows
+        found[f"true_{kind}"] = _mean(np.abs(by_m) <= _WIDTH_M, np.ones(len(rows)))
+        found[f"{kind}_off_m"] = float(np.median(by_m)) if len(rows) else np.nan
+    return found
 
 
 def _pair(

@@ -247,6 +247,14 @@ def bench_ids(results: str, folder: str, *names: str) -> None:
     exchange_bench.bench_ids(Path(results), Path(folder), names, SETTINGS)
 
 
+def bench_models(results: str, *surveys: str) -> None:
+    """What models and drawings hold, read back, beside the models that were driven through."""
+    import models_bench
+
+    models = (ROOT.parent / "shared/data/buildings").resolve()
+    models_bench.bench(Path(results), models, surveys)
+
+
 def bench_presentation(results: str, truths: str, *names: str) -> None:
     """Regular drawings of simulated drives against their truths."""
     import presentation_bench
@@ -297,6 +305,7 @@ def compare_realistic(before: str, after: str) -> None:
 
 
 APART: dict[str, Callable[..., None]] = {
+    "models": bench_models,
     "presentation": bench_presentation,
     "realistic": bench_realistic,
     "compare_realistic": compare_realistic,

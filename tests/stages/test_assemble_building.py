@@ -21,7 +21,7 @@ from scanplan.errors import StageError
 from scanplan.exports.building.sheet_set import compose_sheets
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan import planning
-from scanplan.project import stage_settings
+from scanplan.project import stage_settings, words_file
 from scanplan.store import schemas, tables
 
 NAMES = ("geojson", "dxf", "svg", "pdf", "png", "ifc", "pgm", "yaml", "ids", "known")
@@ -211,3 +211,26 @@ def test_a_storey_without_floor_and_elevation_ends_in_one_line(floors, tmp_path)
     files = floors | {"free": [free, floors["free"][1]]}
     with pytest.raises(StageError, match="no floor was seen in storey Ground; give its elevation"):
         building(files, tmp_path, storey("Ground", None), storey("First", 3.0))
+
+
+def test_sheets_and_layers_are_written_as_the_storeys_receivers_ask(floors, tmp_path):
+    storeys = (storey("Ground", 0.0), storey("First", 3.0))
+    outputs = {kind: tmp_path / f"building.{kind}" for kind in ("ifc", "dxf", "pdf")}
+    drawing = stage_settings.select_drawing(SETTINGS)
+    receiver = words_file.read_receiver({"language": "de", "layers": "din"})
+    assemble_building(
+        floors,
+        outputs,
+        name="house",
+        storeys=storeys,
+        settings=[drawing | {"units": "cm"}, drawing],
+        receivers=[receiver, receiver],
+    )
+    document = ezdxf.readfile(outputs["dxf"])
+    layers = {layer.dxf.name for layer in document.layers}
+    assert {"1-A-340---E-WAND", "2-A-340---E-WAND"} <= layers and "1-A-WALL" not in layers
+    ground, first = list(document.layout_names_in_taborder())[1:]
+    heads = [{t.dxf.text for t in document.layout(of).query("TEXT")} for of in (ground, first)]
+    assert all("Legende" in of and "Legend" not in of for of in heads)
+    # perimeters of the ground floor in whole centimetres, above in metres with a comma
+    assert {"1400", "14,00"} & heads[0] == {"1400"} and {"1400", "14,00"} & heads[1] == {"14,00"}

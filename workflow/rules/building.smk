@@ -29,5 +29,9 @@ rule assemble_building:
             stage_settings.select_drawing(DATASETS[storey.dataset].settings)
             for storey in BUILDING.storeys
         ],
+        receivers=[
+            words_file.read_receiver(DATASETS[storey.dataset].settings["plan"]["export"])
+            for storey in BUILDING.storeys
+        ],
     script:
         "../../scripts/assemble_building.py"

@@ -476,11 +476,7 @@ def limits_of_design(wildcards):
 
 def words_of_receiver(wildcards):
     """The words and names of layers of the job's dataset, likewise."""
-    export = DATASETS[wildcards.dataset].settings["plan"]["export"]
-    return {
-        "words": words_file.read_words(export["language"]),
-        "layers": words_file.read_layers(export["layers"]),
-    }
+    return words_file.read_receiver(DATASETS[wildcards.dataset].settings["plan"]["export"])
 
 
 def source_of_results(wildcards):

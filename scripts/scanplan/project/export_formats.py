@@ -14,8 +14,8 @@ FILES = {
     "ifc": {"ifc": "plan/plan.ifc"},
     "glb": {"glb": "plan/plan.glb"},
     "gpkg": {"gpkg": "plan/plan.gpkg"},
-    "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
     "imdf": {"imdf": "plan/imdf.geojson"},
+    "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
     "json": {"json": "plan/rooms.json"},
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
     "masks": {

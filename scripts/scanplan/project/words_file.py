@@ -16,6 +16,8 @@ from scanplan.project import texts
 from scanplan.project.yaml_file import list_ours, read_yaml
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from scanplan.types import FilePath
 
 _KEYS = {"words": "plan.export.language", "layers": "plan.export.layers"}
@@ -26,6 +28,14 @@ _LONGEST = 255
 """Letters of such a name."""
 _OF_DXF = ("0", "Defpoints")
 """Layers that every drawing has, which are not renamed."""
+
+
+def read_receiver(export: Mapping[str, Any]) -> dict[str, Any]:
+    """Read the `words` and the names of `layers` that the settings `plan.export` name."""
+    return {
+        "words": read_words(export["language"]),
+        "layers": read_layers(export["layers"]),
+    }
 
 
 def read_words(language: str) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from ezdxf.document import Drawing
@@ -20,7 +20,10 @@ _NOT_IN_NAMES = r"""[<>/\\":;?*|,=`'^]"""
 
 
 def format_building_dxf(
-    storeys: Sequence[PlacedStorey], sheets: Sequence[Sheet], unit: str = "mm"
+    storeys: Sequence[PlacedStorey],
+    sheets: Sequence[Sheet],
+    unit: str = "mm",
+    layers: Mapping[str, str] | None = None,
 ) -> str:
     """Return the text of the building's file.
 
@@ -36,6 +39,8 @@ def format_building_dxf(
         Of the storeys, of one scale.
     unit : str
         mm or m: of the model space.
+    layers : dict of str to str, optional
+        Other names of layers, by ours.
 
     Raises
     ------
@@ -49,6 +54,11 @@ def format_building_dxf(
             _add_storey(document, storey, sheet, scale, number)
         document.layouts.delete("Layout1")
         _hide_others(document)
+        for number in range(1, len(storeys) + 1):
+            names = {
+                f"{number}-{our}": f"{number}-{other}" for our, other in (layers or {}).items()
+            }
+            dxf_document.rename_layers(document, names)
         corners_m = [
             storey.to_building(dxf.sheet_corners_m(sheet))
             for storey, sheet in zip(storeys, sheets, strict=True)
