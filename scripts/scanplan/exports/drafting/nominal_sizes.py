@@ -8,6 +8,7 @@ from scanplan.types import FloatArray
 
 _ROUNDS = 20  # shares settle in fewer
 _FEWEST_ALIKE = 3  # as many of one size that no catalogue has are a type: two may be so by chance
+_APART = 1.5  # times what one may be off by: between sizes of its own and of the catalogue
 _STEP_M = 0.01  # of such a size: as fine as openings are measured
 _BUILT_SIGMA_M = 0.005  # plaster and boards make walls of one type differ by as much
 
@@ -69,12 +70,14 @@ def find_own_sizes(
     """Return sizes of a catalogue, and those that several measured ones share and it has not.
 
     Their median, to a centimetre, of those within `allowed_m` of it, the most frequent first;
-    none is nearer to another than what of either might be taken for both.
+    none is nearer to another than half as much again, as what may be either is no size of its own.
 
     Examples
     --------
     >>> find_own_sizes(np.array([0.9, 0.741, 0.75, 0.752, 1.3]), (0.9,), 0.03)
     [0.9, 0.75]
+    >>> find_own_sizes(np.array([0.864, 0.865, 0.87, 0.88, 0.89]), (0.9,), 0.03)
+    [0.9]
     """
     sizes = [float(size) for size in sizes_m]
     left_m = np.asarray(measured_m, float)
@@ -87,5 +90,6 @@ def find_own_sizes(
             return sizes
         alike_m = left_m[np.abs(left_m - left_m[np.argmax(n_alike)]) <= allowed_m]
         size_m = _STEP_M * round(float(np.median(alike_m)) / _STEP_M)
-        left_m = left_m[np.abs(left_m - size_m) > allowed_m]
-        sizes.append(round(size_m, 2))
+        left_m = left_m[~np.isin(left_m, alike_m)]
+        if np.abs(np.array(sizes) - size_m).min(initial=np.inf) >= _APART * allowed_m:
+            sizes.append(round(size_m, 2))
