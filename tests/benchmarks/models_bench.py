@@ -1,16 +1,18 @@
 """Models and drawings of surveys, read back, beside the models that were driven through."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-import ezdxf
-import ezdxf.units
 import ifcopenshell
-import ifcopenshell.util.element
 import numpy as np
 import shapely
 from ezdxf.entities.dxfentity import DXFEntity
+from ezdxf.entities.insert import Insert
+from ezdxf.entities.lwpolyline import LWPolyline
+from ezdxf.filemanagement import readfile
+from ifcopenshell import entity_instance
+from ifcopenshell.util.element import get_pset
 
 from scanplan.design import design_reading
 from scanplan.design.drawn_storey import DrawnStorey
@@ -19,6 +21,7 @@ from scanplan.store import schemas, tables
 
 _FILES = ("plan.ifc", "presentation.ifc", "plan.dxf", "presentation.dxf")
 _LEAST_M = 0.5  # a shorter wall is a jamb or a pier, and no type
+_PER_M = {4: 1000.0, 6: 1.0}  # by the units of DXF: millimetres, metres
 _APPLICATION_CODE = 1001  # of extended data: whose they are
 
 
@@ -131,41 +134,45 @@ def _read_sizes(plan: Path, table: str, schema: schemas.Schema, key: str) -> dic
 def _read_ifc(path: Path) -> dict[str, dict[int, float]]:
     """Return the same of a model: by its quantities, and the widths of doors and windows."""
     model = ifcopenshell.open(path)
-    quantity = ifcopenshell.util.element.get_pset
-    walls = {
-        int(wall.Tag): quantity(wall, "Qto_WallBaseQuantities", "Length")
-        for wall in model.by_type("IfcWall")
+
+    def measure(ifc_class: str, quantities: str, name: str) -> Iterator[tuple[str, float]]:
+        for element in model.by_type(ifc_class):
+            assert isinstance(element, entity_instance)
+            found = get_pset(element, quantities, name)
+            assert isinstance(found, float)
+            number = element.Name if ifc_class == "IfcSpace" else element.Tag
+            yield number, found
+
+    def number(sizes: Iterable[tuple[str, float]]) -> dict[int, float]:
+        return {int(of): size for of, size in sizes}
+
+    doors = measure("IfcDoor", "Qto_DoorBaseQuantities", "Width")
+    windows = measure("IfcWindow", "Qto_WindowBaseQuantities", "Width")
+    return {
+        "wall": number(measure("IfcWall", "Qto_WallBaseQuantities", "Length")),
+        "opening": number([*doors, *windows]),
+        "room": number(measure("IfcSpace", "Qto_SpaceBaseQuantities", "NetFloorArea")),
     }
-    openings = {
-        int(filling.Tag): filling.OverallWidth
-        for kind in ("IfcDoor", "IfcWindow")
-        for filling in model.by_type(kind)
-    }
-    rooms = {
-        int(space.Name): quantity(space, "Qto_SpaceBaseQuantities", "NetFloorArea")
-        for space in model.by_type("IfcSpace")
-    }
-    return {"wall": walls, "opening": openings, "room": rooms}
 
 
 def _read_dxf(path: Path) -> dict[str, dict[int, float]]:
     """Return the same of a drawing: its lines, blocks and outlines, by their extended data."""
-    document = ezdxf.readfile(path)
-    per_m = 1 / ezdxf.units.conversion_factor(document.units, ezdxf.units.M)
+    document = readfile(path)
+    per_m = _PER_M[document.units]
     found: dict[str, dict[int, float]] = {"wall": {}, "opening": {}, "room": {}}
     for entity in document.modelspace():
         facts = _read_facts(entity)
         layer = entity.dxf.layer
-        if layer == "A-WALL-CNTR" and "wall" in facts:
-            corners = np.array([point[:2] for point in entity.get_points("xy")])
-            length = float(np.hypot(*np.diff(corners, axis=0).T).sum())
-            found["wall"][facts["wall"]] = length / per_m
-        elif entity.dxftype() == "INSERT" and "opening" in facts:
+        if isinstance(entity, Insert) and "opening" in facts:
             found["opening"][facts["opening"]] = entity.dxf.xscale / per_m
+        if not isinstance(entity, LWPolyline):
+            continue
+        corners_m = np.array([point[:2] for point in entity.get_points("xy")]) / per_m
+        if layer == "A-WALL-CNTR" and "wall" in facts:
+            found["wall"][facts["wall"]] = float(np.hypot(*np.diff(corners_m, axis=0).T).sum())
         elif layer.startswith("A-AREA") and "room" in facts:
-            corners = [point[:2] for point in entity.get_points("xy")]
-            area = shapely.Polygon(corners).area / per_m**2
-            found["room"][facts["room"]] = max(area, found["room"].get(facts["room"], 0.0))
+            area_m2 = shapely.Polygon(corners_m).area
+            found["room"][facts["room"]] = max(area_m2, found["room"].get(facts["room"], 0.0))
     return found
 
 

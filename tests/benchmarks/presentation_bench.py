@@ -136,7 +136,7 @@ def _measure_widths(plan: DrawnPlan, true: TrueOpenings) -> dict[str, float]:
         apart_m = np.hypot(off[..., 0], off[..., 1])
         rows = np.flatnonzero((apart_m < _JAMB_M).any(axis=1))
         by_m = widths_m[rows] - true_widths_m[apart_m[rows].argmin(axis=1)] if len(rows) else rows
-        found[f"true_{kind}"] = _mean(np.abs(by_m) <= _WIDTH_M, np.ones(len(rows)))
+        found[f"true_{kind}"] = _mean((np.abs(by_m) <= _WIDTH_M).astype(float), np.ones(len(rows)))
         found[f"{kind}_off_m"] = float(np.median(by_m)) if len(rows) else np.nan
     return found
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from helpers import floorplan_making
@@ -255,7 +255,9 @@ def test_nothing_is_moved_farther_than_it_may(offsets_m, tolerance_m, sigma_m):
 @given(jitters)
 @settings(max_examples=25, deadline=None)
 def test_what_has_been_made_regular_is_regular(offsets_m):
-    once, _ = draft_plan(jittered(offsets_m), SETTINGS)
+    once, first = draft_plan(jittered(offsets_m), SETTINGS)
+    # taken for out of square, it is crooked in part, and may be told otherwise by what was turned
+    assume(first.n_square == first.n_walls)
     again, drafted = draft_plan(once, SETTINGS)
     assert drafted.moved_m < 1e-6 and drafted.width_m < 1e-6
     assert shapely.equals_exact(once.areas, again.areas, 1e-6).all()
