@@ -4,19 +4,16 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from scanplan.changes import change_table
+from scanplan.changes import change_table, survey_files
 from scanplan.design import as_built, design_reading, deviation_table, deviations, tolerances
-from scanplan.exports import drawing, geojson, svg
+from scanplan.exports import drawing, svg
 from scanplan.exports.changes import change_geojson, compared_sheet, design_sheet
 from scanplan.exports.data import element_tables
 from scanplan.exports.sheet.title import summarise_survey
-from scanplan.plan import floorplan_files
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath, Settings
-
-_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 
 def compare_design(
@@ -58,10 +55,7 @@ def compare_design(
         If the design is damaged, or the survey fits none of its storeys.
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    files = {part: built[part] for part in _PLAN}
-    plan = floorplan_files.read_floorplan(files, name, **assumed_m)
-    store = tables.ScanStore(built["scans"])
-    scans = store, registered_scans.read_registered_scans(built["registration"], store)
+    plan, scans = survey_files.read_survey(built, name, **assumed_m)
     evidence = tables.read_table(built["evidence"], schemas.EVIDENCE, allow_empty=True)
     allowed = tolerances.make_tolerances(limits)
 
@@ -81,11 +75,6 @@ def compare_design(
     facts = compared_sheet.ComparedFacts(settings["project"] or "", ("", surveyed), version)
     sheet = design_sheet.compose_design_sheet(found, told, allowed.title, facts)
     figure = drawing.draw_sheet(sheet)
-    rows = {
-        of: [geojson.round_value(value) for value in columns[of].tolist()]
-        for of in columns
-        if of != "geometry"
-    }
     tables.write_table(
         outputs["table"],
         schemas.DEVIATIONS,
@@ -96,7 +85,7 @@ def compare_design(
     drawn = change_geojson.format_changes(title, "deviation", columns, "; ".join(summary[1:]))
     for file in unwanted:
         Path(file).unlink(missing_ok=True)
-    atomic.write_text(outputs["csv"], element_tables.format_csv(rows))
+    atomic.write_text(outputs["csv"], element_tables.format_columns(columns))
     atomic.write_text(outputs["geojson"], drawn)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))

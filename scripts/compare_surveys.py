@@ -2,19 +2,15 @@
 
 from collections.abc import Mapping
 
-from scanplan.changes import change_table, comparison
+from scanplan.changes import change_table, comparison, survey_files
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.changes import change_geojson, change_sheet, compared_sheet
 from scanplan.exports.sheet.title import summarise_survey
-from scanplan.plan import floorplan_files
-from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import code_files
 from scanplan.report import changes_page
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath, Settings
-
-_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 
 def compare_surveys(
@@ -52,20 +48,15 @@ def compare_surveys(
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
 
-    def read_plan(files: Mapping[str, FilePath], name: str) -> FloorPlan:
-        wanted = {part: files[part] for part in _PLAN}
-        return floorplan_files.read_floorplan(wanted, name, **assumed_m)
-
-    def read_scans(files: Mapping[str, FilePath]) -> comparison.Scans:
-        store = tables.ScanStore(files["scans"])
-        return store, registered_scans.read_registered_scans(files["registration"], store)
-
     def read_day(files: Mapping[str, FilePath]) -> str:
         evidence = tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True)
         return summarise_survey(evidence).surveyed
 
-    plans = (read_plan(a, names[0]), read_plan(b, names[1]))
-    found = comparison.compare_surveys(plans, (read_scans(a), read_scans(b)))
+    earlier, later = (
+        survey_files.read_survey(files, name, **assumed_m)
+        for files, name in zip((a, b), names, strict=True)
+    )
+    found = comparison.compare_surveys((earlier[0], later[0]), (earlier[1], later[1]))
     columns = change_table.tabulate_changes(found.changes)
     tied = change_table.summarise_tie(found.tie)
     lines = change_table.summarise_changes(found.changes)

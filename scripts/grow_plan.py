@@ -3,21 +3,17 @@
 from collections.abc import Mapping, Sequence
 
 from scanplan.arrays import array_plan
-from scanplan.changes import growth, growth_table
-from scanplan.changes.comparison import Scans
+from scanplan.changes import growth, growth_table, survey_files
 from scanplan.changes.joined_scans import JoinedScans
 from scanplan.exports import drawing, dxf, geojson, svg
 from scanplan.exports.changes import compared_sheet, growth_sheet
 from scanplan.exports.data import element_tables
 from scanplan.exports.sheet.title import summarise_survey
-from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
-from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.store import atomic, schemas, tables
 from scanplan.types import Columns, FilePath, Settings
-
-_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 
 def grow_plan(
@@ -55,12 +51,6 @@ def grow_plan(
     export = settings["plan"]["export"]
     assumed_m = {key: export[key] for key in ("assumed_thickness_m", "assumed_height_m")}
 
-    def read(files: Mapping[str, FilePath], name: str) -> tuple[FloorPlan, Scans]:
-        wanted = {part: files[part] for part in _PLAN}
-        plan = floorplan_files.read_floorplan(wanted, name, **assumed_m)
-        store = tables.ScanStore(files["scans"])
-        return plan, (store, registered_scans.read_registered_scans(files["registration"], store))
-
     def read_day(files: Mapping[str, FilePath]) -> str:
         evidence = tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True)
         return summarise_survey(evidence).surveyed
@@ -69,7 +59,10 @@ def grow_plan(
         made = array_plan.assemble_plan(joined, names[-1], threads)
         return made.drawn, made.evidence
 
-    known = [read(files, name) for files, name in zip(surveys, names, strict=True)]
+    known = [
+        survey_files.read_survey(files, name, **assumed_m)
+        for files, name in zip(surveys, names, strict=True)
+    ]
     grown = growth.grow_plan(known, settings, assemble)
     columns = growth_table.tabulate_contributions(grown)
     lines = growth_table.summarise_growth(grown)
@@ -79,11 +72,6 @@ def grow_plan(
     sheet = growth_sheet.compose_growth_sheet(grown, facts)
     figure = drawing.draw_sheet(sheet)
     title = f"Plan of {', '.join(names)}"
-    rows = {
-        of: [geojson.round_value(value) for value in columns[of].tolist()]
-        for of in columns
-        if of != "geometry"
-    }
     tables.write_table(
         outputs["table"],
         schemas.CONTRIBUTIONS,
@@ -91,7 +79,7 @@ def grow_plan(
         allow_empty=True,
         notes=growth_table.state_surveys(grown),
     )
-    atomic.write_text(outputs["csv"], element_tables.format_csv(rows))
+    atomic.write_text(outputs["csv"], element_tables.format_columns(columns))
     atomic.write_text(outputs["geojson"], geojson.format_geojson(grown.plan, grown.evidence))
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))

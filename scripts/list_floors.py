@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 
+from scanplan.changes import survey_files
 from scanplan.exports.data import element_tables
 from scanplan.plan import floorplan_files
 from scanplan.report import changes_page, floor_table
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
-
-_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 
 def list_floors(
@@ -39,7 +38,8 @@ def list_floors(
     """
     rows = []
     for of, files in zip(surveys, inputs, strict=True):
-        plan = floorplan_files.read_floorplan({part: files[part] for part in _PLAN}, of["survey"])
+        wanted = {part: files[part] for part in survey_files.PLAN}
+        plan = floorplan_files.read_floorplan(wanted, of["survey"])
         evidence = tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True)
         changes = None
         if of["earlier"]:

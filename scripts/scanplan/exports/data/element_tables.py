@@ -10,6 +10,7 @@ import shapely
 
 from scanplan.exports import envelope
 from scanplan.exports.data.element_ids import ElementIds
+from scanplan.exports.geojson import round_value
 from scanplan.geometry import overlays
 from scanplan.plan.floorplan import WAYS, FloorPlan
 from scanplan.store import schemas
@@ -90,6 +91,16 @@ def format_csv(rows: Rows) -> str:
     writer.writerow(rows)
     writer.writerows([_cell(value) for value in row] for row in zip(*rows.values(), strict=True))
     return text.getvalue()
+
+
+def format_columns(columns: Columns) -> str:
+    """Return the columns of a table but its geometry likewise, lengths to 0.1 mm."""
+    rows = {
+        name: [round_value(value) for value in values.tolist()]
+        for name, values in columns.items()
+        if name != "geometry"
+    }
+    return format_csv(rows)
 
 
 def _plain(columns: Columns, global_ids: Sequence[str]) -> Rows:
