@@ -235,6 +235,22 @@ def test_a_door_moved_along_its_wall_is_told_by_rays_at_its_edge():
     assert door.verdict == MOVED and door.moved_m == pytest.approx((0.0, 0.3), abs=0.02)
 
 
+def test_edges_are_known_as_well_as_most_of_them_agree():
+    doors = [(5, y, 5, y + 0.7) for y in (0.3, 1.5, 2.7, 3.9)]
+    near = [(5, y + 0.01, 5, end + 0.01) for _, y, _, end in doors]
+    wider = [near[0], (5, 1.5, 5, 2.36), *near[2:]]
+    for later, shifts_m in ((near, [0.01] * 4), (wider, [0.01, 0.16, 0.01, 0.01])):
+        found = opening_changes.compare_openings(survey(doors=doors), survey(doors=later))
+        assert [abs(c.shift_m) for c in found] == pytest.approx(shifts_m, abs=1e-6)
+        assert [c.sigma_m for c in found] == pytest.approx([1.4826 * 0.01] * 4)
+        # what one shows that is far from where it was is no error of the others
+        assert {c.verdict for c in found if abs(c.shift_m) < 0.1} == {SAME}
+        assert all(c.p > 0.99 for c in found if abs(c.shift_m) < 0.1)
+    # two edges say nothing of what edges differ by
+    (door,) = opening_changes.compare_openings(survey(doors=doors[:1]), survey(doors=near[:1]))
+    assert door.sigma_m > 0.05 and door.verdict == SAME
+
+
 def test_furniture_that_was_carried_is_one_piece_and_no_wall():
     before, after = shapely.box(1.4, 3.9, 2.2, 4.4), shapely.box(2.6, 3.9, 3.4, 4.4)
     changes = compare(survey(pieces=[before]), survey(pieces=[after]))
