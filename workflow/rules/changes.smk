@@ -73,6 +73,8 @@ if len(GIVEN) > 1:
             "logs/{dataset}/grow_plan.log",
         benchmark:
             "benchmarks/{dataset}/grow_plan.tsv"
+        wildcard_constraints:
+            dataset=match_names(list(GIVEN)[1:]),
         threads: 2
         resources:
             mem_mb=grown(mem_mb=4000),

@@ -164,7 +164,10 @@ def changes_of_floors(wildcards):
     """The pages of what changed on every floor, to which the table leads, and the reports."""
     pages = []
     for of in surveys_of_floors():
-        pages.append(f"results/{of['survey']}/report.html")
+        pages += [
+            f"results/{of['survey']}/{file}"
+            for file in ("report.html", "plan/plan.svg")
+        ]
         if of["earlier"]:
             pages.append(f"results/{of['survey']}/changes/{of['earlier']}/changes.html")
     return pages
