@@ -166,6 +166,30 @@ def test_a_plan_of_both_is_made_without_the_wall_that_was_moved(tmp_path):
     assert "1 moved" in "\n".join(growth_table.summarise_growth(grown))
 
 
+def test_a_third_survey_is_compared_with_the_plan_of_the_two_before_it():
+    later = (5.3, 0, 5.3, 5)
+    plans = [survey(doors=[]), survey([later], [], motion=TURNED), survey([later], [])]
+    scans = [
+        own_scans([INNER], [], SENSORS),
+        own_scans([later], [], SENSORS, TURNED, from_ns=10**12),
+        # of one room alone
+        own_scans([later], [], WEST, from_ns=10**15),
+    ]
+
+    def assemble(joined):
+        return plans[2].plan, tables.no_rows(schemas.EVIDENCE)
+
+    known = [(of.plan, own) for of, own in zip(plans, scans, strict=True)]
+    grown = growth.grow_plan(known, {}, assemble)
+    moved = [[c for c in of.changes if c.table == "wall" and c.is_change] for of in grown.steps]
+    assert [len(of) for of in moved] == [1, 0]
+    walls = {of.number: of for of in grown.contributions if of.table == "wall"}
+    # that in the east was seen by the first two, the one that was moved not by the first
+    assert walls[1].seen == (0, 1) and walls[1].age_days == pytest.approx(11.5, abs=0.2)
+    assert walls[4].seen == (1, 2) and not walls[4].is_stale
+    assert growth_table.summarise_growth(grown)[-1].startswith("not seen by the latest survey: ")
+
+
 def test_the_sheet_of_both_marks_what_the_latest_alone_saw():
     grown, _ = grown_floor()
     facts = compared_sheet.ComparedFacts("", ("1 May 2024", "2 May 2024"), "")
