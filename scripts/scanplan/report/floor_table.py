@@ -10,7 +10,7 @@ from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.report.templates import render_template
 from scanplan.types import BoolArray, Columns
-from scanplan.validation.doubts import list_to_verify
+from scanplan.validation.doubts import list_doubts
 
 Row = dict[str, Any]
 _COUNTED = {"walls": "wall", "openings": "opening", "furniture": "furniture"}
@@ -44,7 +44,7 @@ def describe_survey(
         "wall_m": round(float(plan.lengths_m.sum()), 2),
         "doors": int(np.isin(kinds, ("door", "passage")).sum()),
         "windows": int((kinds == "window").sum()),
-        "to_verify": len(list_to_verify(plan)),
+        "to_verify": len(list_doubts(plan)),
     }
     return row | _count_changes(changes)
 
