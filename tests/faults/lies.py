@@ -168,6 +168,16 @@ def follow(first, second, moved=None, *, pause_s=30.0):
     ]
 
 
+def follow_twice(first, second, third, second_moved, third_moved):
+    """Return three drives one after the other, the later ones in maps of their own."""
+    two = follow(first, second, second_moved)
+    return [*two, follow(two[1], third, third_moved)[1]]
+
+
+def _let_last_jump(parts):
+    return [*parts[:-1], move_map(parts[-1], motion(2, 1, 10))]
+
+
 def join(first, second):
     """Return two drives as one recording."""
     return replace(
@@ -285,6 +295,16 @@ _OF_MORE = {
     "second bag beside the first, no odometry": lambda d: [
         hide_odometry(drive) for drive in follow(d["rooms"], d["rooms again"], motion(30))
     ],
+    "second bag 3 m and 20 degrees off that jumps on the way, no odometry": lambda d: [
+        hide_odometry(drive)
+        for drive in _let_last_jump(follow(d["rooms"], d["rooms again"], motion(3, 0, 20)))
+    ],
+    "three bags, each with a map of its own, no odometry": lambda d: [
+        hide_odometry(drive)
+        for drive in follow_twice(
+            d["rooms"], d["rooms again"], d["rooms"], motion(3, 0, 20), motion(-4, 2, -60)
+        )
+    ],
     "two storeys on one another": lambda d: join(*follow(d["rooms"], d["storey above"])),
     "two storeys on one another, no odometry": lambda d: hide_odometry(
         join(*follow(d["rooms"], d["storey above"]))
@@ -295,6 +315,19 @@ _OF_MORE = {
     "a mirror on a wall": lambda d: d["mirror"],
 }
 
+_OF_MORE_SPATIAL = {
+    "second bag 3 m and 20 degrees off, 0.3 m above, no odometry": lambda d: [
+        hide_odometry(drive)
+        for drive in follow(d["rooms"], d["rooms again"], motion(3, 0, 20, z_m=0.3))
+    ],
+    "second bag 3 m and 20 degrees off, leaning by 1 degree, no odometry": lambda d: [
+        hide_odometry(drive)
+        for drive in follow(
+            d["rooms"], d["rooms again"], motion(3, 0, 20) @ motion(turn_deg=1, about="y")
+        )
+    ],
+}
+
 
 def list_lies(*, planar):
     """Return every lie by its name: a function of drives by name to one drive, or to several."""
@@ -302,4 +335,4 @@ def list_lies(*, planar):
     if not planar:
         single |= _SPATIAL_ONLY
     lies = {name: (lambda d, lie=lie: lie(d["rooms"])) for name, lie in single.items()}
-    return lies | _OF_MORE
+    return lies | _OF_MORE | ({} if planar else _OF_MORE_SPATIAL)

@@ -59,6 +59,7 @@ _CAUSES = {
     "map leans": ("z is not up",),
     "map of a camera's axes": ("a camera's axes",),
     "second bag": (_LOST, "begun another map"),
+    "three bags": (_LOST, "begun another map"),
     "two storeys on one another": (_LOST,),
     "two storeys one above": ("more than one storey was driven through",),
     "a mirror": ("a mirror hangs there",),

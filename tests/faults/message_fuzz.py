@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from faults.judging import Case, judge
-from scanplan.recordings import messages
+from scanplan.recordings import driver_messages, messages
 
 _SIZES = {1: 1, 2: 1, 3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8}
 _COUNT = st.integers(0, 2**32 - 1) | st.integers(0, 40)
@@ -42,12 +42,32 @@ _LASER = st.builds(
     ranges=st.lists(_NUMBER, max_size=40).map(lambda r: np.array(r, np.float32)),
     intensities=st.just(np.zeros(0, np.float32)),
 )
+_NUMBERS = st.lists(_NUMBER, max_size=4).map(lambda values: np.array(values, np.float32))
+_ECHOES = st.lists(st.builds(SimpleNamespace, echoes=_NUMBERS), max_size=40)
+_MULTI_ECHO = st.builds(
+    lambda laser, ranges: SimpleNamespace(**(vars(laser) | {"ranges": ranges})), _LASER, _ECHOES
+)
+_XYZ = dict.fromkeys("xyz", _NUMBER)
+_TIMED = st.builds(SimpleNamespace, offset_time=_COUNT, **_XYZ)
+_LIVOX = st.builds(SimpleNamespace, point_num=_COUNT, points=st.lists(_TIMED, max_size=9))
+_CHANNEL = st.builds(
+    SimpleNamespace, name=st.sampled_from(["time", "t", "intensity", ""]), values=_NUMBERS
+)
+_OLD_CLOUD = st.builds(
+    SimpleNamespace,
+    points=st.lists(st.builds(SimpleNamespace, **_XYZ), max_size=4),
+    channels=st.lists(_CHANNEL, max_size=3),
+)
 
 
 def try_messages(tally, n_each):
     """Judge so many clouds and laser scans: points of three coordinates each, or one line."""
     _try_drawn(tally, n_each, "odd PointCloud2", _CLOUD, messages.read_point_cloud)
     _try_drawn(tally, n_each, "odd LaserScan", _LASER, messages.read_laser_scan)
+    read_echoes = driver_messages.read_multi_echo
+    _try_drawn(tally, n_each, "odd MultiEchoLaserScan", _MULTI_ECHO, read_echoes)
+    _try_drawn(tally, n_each, "odd CustomMsg", _LIVOX, driver_messages.read_livox)
+    _try_drawn(tally, n_each, "odd PointCloud", _OLD_CLOUD, driver_messages.read_old_point_cloud)
 
 
 def _try_drawn(tally, n_drawn, group, strategy, read):

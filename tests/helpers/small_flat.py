@@ -96,20 +96,50 @@ def sweep(pose, seed):
     return points[np.isfinite(points).all(axis=1)].astype(np.float32)
 
 
-def write_bag(folder, *, behind_ns=0):
+def write_bag(folder, *, behind_ns=0, make_cloud=bag_making.Maker.cloud):
     """Write a drive through the flat as a bag, a scan a second; return the dataset's files.
 
     The sensor's clock may be behind that of the poses. Messages are received some milliseconds
-    after they were stamped.
+    after they were stamped. `make_cloud` returns a message of a maker, a stamp and points.
     """
     maker = bag_making.Maker("ros1")
     entries = []
     late_ns = np.random.default_rng(2).integers(5_000_000, 30_000_000, (len(way_poses()), 2))
     for i, pose in enumerate(way_poses()):
         t_ns = bag_making.START_NS + i * 10**9
-        cloud = maker.cloud(t_ns - behind_ns, sweep(pose, i))
+        cloud = make_cloud(maker, t_ns - behind_ns, sweep(pose, i))
         entries.append(("/amcl_pose", t_ns + late_ns[i, 0], maker.amcl(t_ns, pose[:3, 3])))
         entries.append(("/points", t_ns + late_ns[i, 1], cloud))
+    maker.write(folder / "run", entries)
+    return dataset_files.find_files(folder)
+
+
+def write_two_drives(folder, map_from_second):
+    """Write the drive there, and an hour later the way back in a map of its own (4, 4)."""
+    maker = bag_making.Maker("ros1")
+    poses = way_poses()
+    for number, (row, moved) in enumerate(((1, np.eye(4)), (-1, map_from_second))):
+        entries = []
+        for i, pose in enumerate(poses[::row]):
+            t_ns = bag_making.START_NS + (3600 * number + i) * 10**9
+            (at_m,), (turn,) = se3.split_pose((moved @ pose)[None])
+            entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, at_m, turn)))
+            entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, i + 100 * number))))
+        maker.write(folder / f"run{number}", entries)
+    return dataset_files.find_files(folder)
+
+
+def write_first_echoes(folder):
+    """Write what a laser in the plane sees all around as MultiEchoLaserScan."""
+    maker = bag_making.Maker("ros1")
+    angle = np.arange(720) * 2 * np.pi / 720
+    beams = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(len(angle))])
+    entries = []
+    for i, pose in enumerate(way_poses()):
+        t_ns = bag_making.START_NS + i * 10**9
+        range_m = np.linalg.norm(see(pose, beams, i), axis=1)
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, pose[:3, 3])))
+        entries.append(("/echoes", t_ns, maker.multi_echo(t_ns, range_m)))
     maker.write(folder / "run", entries)
     return dataset_files.find_files(folder)
 

@@ -69,6 +69,37 @@ def test_clouds_in_the_map(tmp_path, bag_plan):
     small_flat.assert_same_plan(plan, bag_plan)
 
 
+# every other point: a message of a driver's has an object for each
+DRIVERS = {
+    "CustomMsg": lambda maker, t_ns, xyz_m: maker.livox(
+        t_ns, xyz_m[::2], np.zeros(len(xyz_m[::2]))
+    ),
+    "PointCloud": lambda maker, t_ns, xyz_m: maker.old_cloud(
+        t_ns, xyz_m[::2], np.zeros(len(xyz_m[::2]))
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", DRIVERS)
+def test_clouds_of_drivers_own_messages(tmp_path, bag_plan, kind):
+    files = small_flat.write_bag(tmp_path, make_cloud=DRIVERS[kind])
+    small_flat.assert_same_plan(small_flat.plan_of(tmp_path / "plan", files), bag_plan)
+
+
+def test_clouds_in_centimetres(tmp_path, bag_plan):
+    files = small_flat.write_bag(
+        tmp_path, make_cloud=lambda maker, t_ns, xyz_m: maker.cloud(t_ns, 100 * xyz_m)
+    )
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_unit="cm")
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+def test_two_drives_with_maps_of_their_own(tmp_path, bag_plan):
+    moved = small_flat.shift(3.0, -1.0, 0.3) @ small_flat.mount_scanner(0.0, 25.0)
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_two_drives(tmp_path, moved))
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
 def test_clouds_by_the_uptime_of_their_sensor(tmp_path, bag_plan):
     behind_ns = bag_making.START_NS - 734 * 10**9
     plan = small_flat.plan_of(
@@ -90,6 +121,11 @@ def laser_plan(tmp_path_factory):
     folder = tmp_path_factory.mktemp("laser")
     files = small_flat.write_scanners(folder, small_flat.MIDDLE, half_deg=180)
     return small_flat.plan_of(folder / "plan", files)
+
+
+def test_first_echoes_of_a_laser(tmp_path, laser_plan):
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_first_echoes(tmp_path))
+    small_flat.assert_same_plan(plan, laser_plan)
 
 
 @pytest.mark.parametrize(("planar", "half_deg"), [(True, 90), (False, 180), (False, 135)])

@@ -34,6 +34,7 @@ def test_evo_and_we_read_the_poses_that_were_written(tmp_path):
         ("1700000000123 0 0 0 0 0 0 1", "line 2 .*after the year 2262; give seconds"),
         ("2_0.0 0 0 0 0 0 0 1", "line 2 is not `t tx"),
         ("1 0 0 0 0 0 0 one", "line 2 is not `t tx"),
+        ("1 " * 10_000, "line 2 has 20000 characters"),
     ],
 )
 def test_what_is_no_pose_is_told_with_its_line(tmp_path, line, told):

@@ -12,6 +12,7 @@ from scanplan.types import FilePath, FloatArray, IntArray
 
 END_NS = np.iinfo(np.int64).max
 """Stamps in nanoseconds lie below it: 64 bits hold those up to the year 2262."""
+_LONGEST_LINE = 10_000  # characters: eight numbers, and a comment
 
 
 def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
@@ -34,6 +35,11 @@ def read_tum(path: FilePath) -> tuple[IntArray, FloatArray]:
     # some editors put a mark that is not shown before the first line
     text = Path(path).read_text(encoding="utf-8-sig", errors="replace")
     for number, line in enumerate(text.splitlines(), 1):
+        if len(line) > _LONGEST_LINE:
+            raise StageError(
+                f"{path}: line {number} has {len(line)} characters, no pose more than"
+                f" {_LONGEST_LINE}; mend it"
+            )
         values = line.split("#")[0].replace(",", " ").split()
         if not values:
             continue
