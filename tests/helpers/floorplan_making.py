@@ -130,6 +130,7 @@ def rooms(polygons=ROOMS):
         "closed": np.ones(n, bool),
         "n_scans": np.full(n, 2, np.int32),
         "name": np.full(n, "", object),
+        "use": np.full(n, "", object),
         "corrected": np.full(n, "", object),
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
     }

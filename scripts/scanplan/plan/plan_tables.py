@@ -206,6 +206,7 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
             "closed": room.closed,
             "n_scans": room.n_scans,
             "name": "",
+            "use": "",
             "corrected": "",
             "geometry": shapely.to_wkb(room.polygon),
         }

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.plan import floorplan
+from scanplan.plan.corrections.things import fit_scale
 from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
@@ -58,6 +59,15 @@ def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
     ]
 
 
+def state_lengths(plan: floorplan.FloorPlan) -> str:
+    """Return how far what was taped is from what is drawn, and what scale follows of all."""
+    off = ", ".join(f"{1000 * (drawn - taped):+.0f}" for drawn, taped, _ in plan.taped_m)
+    counted = floorplan.say_count(len(plan.taped_m), "taped length")
+    scale, sigma = fit_scale(plan.taped_m)
+    by_tape = f"{100 * (scale - 1):+.2f} % ± {100 * sigma:.2f} %"
+    return f"drawn less taped, of {counted}: {off} mm; by tape the plan would be {by_tape} longer"
+
+
 def state_reference(reference: floorplan.GeoReference) -> str:
     """Return how far each control and each check point is off where a plan is laid onto Earth."""
 
@@ -89,6 +99,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     counts = Counter(doubt.kind for doubt in doubts.list_to_verify(plan))
     reference = plan.georeference
     placed = [] if reference is None else [("on Earth", state_reference(reference))]
+    placed += [("taped", state_lengths(plan))] if plan.taped_m else []
     to_verify = [f"{n:,} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items()]
     return [
         ("recorded", recorded),

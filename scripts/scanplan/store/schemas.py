@@ -310,25 +310,28 @@ too: as many as were expected through a window above its sill, or through a gap 
 """
 ROOMS = Schema(
     "rooms",
-    2,
+    3,
     {
         "room": "int32",
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
         "name": "string",
+        "use": "string",
         "corrected": "string",
         "geometry": "binary",
     },
     ("room",),
     geometry=True,
 )
+"""Rooms of the plan; `name` and `use` are what a person says, empty where nobody did."""
 FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
-corrected plan `n_corrections`, carried out, and `unmatched_corrections`, why others are not; and
+corrected plan `n_corrections`, carried out, `unmatched_corrections`, why others are not,
+`corrected_by`, who said so and when, and `lengths`, drawn, taped and its standard deviation; and
 `nearly`, what was nearly drawn: a list of `kind`, `ends_m` and `p`, JSON.
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"

@@ -106,6 +106,7 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
         Name=str(columns["room"][row]),
         LongName=plan.room_names[row],
         ObjectPlacement=_on_floor(model),
+        ObjectType=str(columns["use"][row]) or None,
         CompositionType="ELEMENT",
         PredefinedType="INTERNAL",
     )

@@ -7,9 +7,10 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan.corrections import added, changed, outlines
+from scanplan.plan.corrections import added, changed, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
-from scanplan.project.corrections_file import OUTLINES, POINTS, Correction
+from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
+from scanplan.store import schemas
 from scanplan.types import FloatArray
 
 SAID = {
@@ -17,10 +18,17 @@ SAID = {
     "keep": "kept by hand",
     "change": "changed by hand",
     "add": "added by hand",
+    "settle": "checked by hand",
+    "split": "changed by hand",
+    "merge": "changed by hand",
 }
-"""What column `corrected` says of an element."""
+"""What column `corrected` says of an element, with who said it, and on which day."""
+_TAPE_M = 0.005
+"""ASSUME of a taped length without a standard deviation: what a tape sags, and its ends are off."""
+_OFF = 3.0
+"""Standard deviations by which a taped length is off that is told."""
 
-
+_DAY = 10  # characters of a moment: its year, month and day
 _FARTHEST_M = 100.0
 """From the plan to a wall that is added: a part of the building that no scan shows is nearer."""
 
@@ -36,19 +44,22 @@ class Outcome:
         Of each that matches nothing, why.
     told : list of str
         What else follows from one.
+    lengths_m : list of (float, float, float)
+        Of each taped length what is drawn, what was taped, and the standard deviation of that.
     """
 
     n_applied: int = 0
     unmatched: list[str] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
+    lengths_m: list[tuple[float, float, float]] = field(default_factory=list)
 
 
 def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outcome:
     """Carry corrections out on the rows of a plan, in their order, rooms last.
 
-    Walls and openings are those nearest to the place of an entry, within reach, rooms those that
-    it is in. Numbers stay what they were. With a wall go its faces, its openings and its evidence;
-    rooms keep their outlines, but for those that are parted or one.
+    Walls, openings and furniture are those nearest to the place of an entry, within reach, rooms
+    those that it is in. Numbers stay what they were. With a wall go its faces, its openings and
+    its evidence; rooms keep their outlines, but for those that are parted or one.
 
     Parameters
     ----------
@@ -64,8 +75,8 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         nothing is left of the plan.
     """
     outcome = Outcome()
-    said = [correction for correction in corrections if correction.element not in POINTS]
-    of_rooms = [c for c in said if c.element == "room" and c.action not in OUTLINES]
+    said = [c for c in corrections if c.element not in (*POINTS, LENGTH)]
+    of_rooms = [c for c in said if c.element == "room" and c.action not in (*OUTLINES, SETTLE)]
     _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
     for correction in said:
         if correction.action == "add":
@@ -75,6 +86,8 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         if correction.action in OUTLINES:
             _draw_outline(rows, correction, outcome)
     _apply_found(rows, of_rooms, outcome)
+    _apply_found(rows, [c for c in said if c.action == SETTLE], outcome)
+    _check_lengths(rows, [c for c in corrections if c.element == LENGTH], outcome)
     if not rows.faces:
         raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
     return outcome
@@ -108,6 +121,8 @@ def _find(rows: PlanRows, correction: Correction) -> Row | None:
     place = shapely.Point(correction.at_m)
     if correction.element == "room":
         return rows.room_at(place)
+    if correction.element == "furniture":
+        return things.find_thing(rows, place)
     return added.find_nearest(rows.of(correction.element), place)
 
 
@@ -121,33 +136,66 @@ def _tell_unmatched(correction: Correction) -> str:
 
 def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> str | None:
     """Carry out what is said of a row; return why it was not, if so."""
+    said = state_said(correction)
     if correction.element == "face":
         act = changed.keep_face if correction.action == "keep" else changed.remove_face
-        return act(rows, row, SAID[correction.action])
+        return act(rows, row, said)
+    if correction.action == SETTLE:
+        things.settle_room(rows, row, said)
+        return None
     is_change = correction.action == "change"
     if is_change and (fault := _CHANGES[correction.element](rows, row, correction)):
         return fault
     if correction.action == "remove" or (correction.element == "wall" and correction.kind):
         _remove(rows, correction, row, outcome)
         return None
-    row["corrected"] = SAID[correction.action]
-    # what a person has looked at needs no other to verify it
-    row |= {"verify": False} if "verify" in row else {}
-    row |= {name: "" for name in ("about", "doubt") if name in row}
+    if correction.element != "furniture":
+        things.leave_doubt(row, said)
     return None
+
+
+def state_said(correction: Correction) -> str:
+    """Return what column `corrected` says of what an entry is of.
+
+    >>> state_said(Correction("", "wall", "keep", (0, 0), by="A. Bee", when="2026-03-01T09:30:00Z"))
+    'kept by hand, A. Bee, 2026-03-01'
+    """
+    day = correction.when[:_DAY]
+    return ", ".join(filter(None, [SAID[correction.action], correction.by, day]))
 
 
 def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
     room["name"] = " ".join(filter(None, [correction.number, correction.name or room["name"]]))
+    room["use"] = correction.use or room["use"]
+
+
+def _change_thing(rows: PlanRows, thing: Row, correction: Correction) -> None:
+    if correction.outline_m is not None:
+        thing |= things.draw_columns(shapely.Polygon(correction.outline_m))
+    thing["kind"] = correction.kind or thing["kind"]
+
+
+def _check_lengths(rows: PlanRows, taped: Sequence[Correction], outcome: Outcome) -> None:
+    """Hold the plan against what was taped; tell what is off, and what scale follows of all."""
+    for correction in taped:
+        taped_m, sigma_m = correction.length_m or 0.0, correction.sigma_m or _TAPE_M
+        line_m = np.array(correction.line_m)
+        drawn_m, off = things.tell_length(rows, line_m, taped_m, sigma_m)
+        outcome.lengths_m.append((drawn_m, taped_m, sigma_m))
+        outcome.n_applied += 1
+        if abs(off) > _OFF:
+            by = f"{drawn_m:.3f} m are drawn where {taped_m:.3f} m were taped"
+            remedy = "tape it again, or move the wall that is wrong"
+            outcome.told.append(f"{correction.entry}: {by}, {abs(off):.1f} sigma apart; {remedy}")
 
 
 def _draw_outline(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
     """Part a room, or join two."""
     if correction.action == "split":
-        fault = outlines.split_room(rows, np.array(correction.line_m), SAID["change"])
+        fault = outlines.split_room(rows, np.array(correction.line_m), state_said(correction))
     else:
         places_m = np.array(correction.at_m), np.array(correction.with_m)
-        fault = outlines.merge_rooms(rows, *places_m, SAID["change"])
+        fault = outlines.merge_rooms(rows, *places_m, state_said(correction))
     outcome.n_applied += fault is None
     if fault:
         x_m, y_m = correction.at_m
@@ -159,7 +207,7 @@ def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
     if correction.element == "opening":
         wall = added.close_opening(rows, row)
         if wall is not None:
-            wall["corrected"] = wall["corrected"] or SAID["change"]
+            wall["corrected"] = wall["corrected"] or state_said(correction)
     rows.drop(correction.element, number)
     if correction.element == "wall":
         lost = [opening["opening"] for opening in rows.openings if opening["wall"] == number]
@@ -171,10 +219,17 @@ def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
 
 
 def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
-    line_m = np.array(correction.line_m)
-    if correction.element == "wall":
+    said = state_said(correction)
+    line_m = np.array(correction.line_m or correction.outline_m)
+    if correction.element in ("wall", "furniture"):
         _check_near(rows, correction, line_m)
-        added.add_wall(rows, line_m, correction.thickness_m, SAID["add"])
+    if correction.element == "furniture":
+        things.add_thing(rows, shapely.Polygon(line_m), correction.kind or schemas.PIECE)
+        outcome.n_applied += 1
+        return
+    if correction.element == "wall":
+        added.add_wall(rows, line_m, correction.thickness_m, said)
+        changed.set_height(rows, rows.walls[-1], correction.height_m)
         outcome.n_applied += 1
         return
     wall = added.find_nearest(rows.walls, shapely.Point(correction.at_m))
@@ -185,24 +240,30 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
     if fault := added.explain_misfit(wall, line_m):
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
         raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
-    added.add_opening(rows, wall, line_m, correction.kind, SAID["add"])
+    added.add_opening(rows, wall, line_m, correction.kind, said)
+    if correction.opens_m is not None and (
+        fault := things.hang_leaf(rows, rows.openings[-1], np.array(correction.opens_m))
+    ):
+        outcome.told.append(f"{correction.entry}: {fault}")
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
     rows.openings[-1] |= {name: of for name, of in heights_m.items() if of is not None}
     outcome.n_applied += 1
 
 
 def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> None:
-    """Refuse a wall far from all others: the sheet would be all but empty, its scale 1:50000."""
+    """Refuse what is far from all walls: the sheet would be all but empty, its scale 1:50000."""
     faces_m = np.array([[face[end] for end in added.ENDS] for face in rows.faces]).reshape(-1, 2)
     low_m, high_m = faces_m.min(axis=0), faces_m.max(axis=0)
     off_m = float(np.max(np.maximum(low_m - line_m, line_m - high_m)))
     if off_m > _FARTHEST_M:
-        fault = f"the wall lies {off_m:.0f} m beyond the plan, at most {_FARTHEST_M:.0f} m are"
-        raise StageError(f"{correction.entry}: {fault} drawn; give `line` in metres of the map")
+        beyond = f"the {correction.element} lies {off_m:.0f} m beyond the plan"
+        fault = f"{beyond}, at most {_FARTHEST_M:.0f} m are"
+        raise StageError(f"{correction.entry}: {fault} drawn; give its places in metres of the map")
 
 
 _CHANGES = {
     "wall": changed.change_wall,
     "opening": changed.change_opening,
     "room": _change_room,
+    "furniture": _change_thing,
 }

@@ -48,7 +48,7 @@ def split_room(rows: PlanRows, line_m: FloatArray, said: str) -> str | None:
         return "does not part the room from wall to wall"
     number, other = room["room"], rows.next_number("room")
     kept = parts[0]
-    rows.rooms.append(room | {"room": other, "name": ""} | _shape_columns(parts[1]))
+    rows.rooms.append(room | {"room": other, "name": "", "use": ""} | _shape_columns(parts[1]))
     room |= _shape_columns(kept)
     for row in (room, rows.rooms[-1]):
         row["corrected"] = said
@@ -89,7 +89,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
         return "is parted from the other room by a wall; remove that, too"
     room |= _shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
     room |= {"closed": room["closed"] and other["closed"], "corrected": said}
-    room |= {"name": room["name"] or other["name"]}
+    room |= {said: room[said] or other[said] for said in ("name", "use")}
     room["n_scans"] = max(room["n_scans"], other["n_scans"])
     rows.rooms.remove(other)
     for opening in rows.openings:

@@ -1,0 +1,103 @@
+"""Heights, leaves, furniture, uses, settled rooms and taped lengths on the plan of two rooms."""
+
+import json
+
+import numpy as np
+import pytest
+import shapely
+
+from helpers.correcting import corrected, write_plan
+from scanplan.exports.drafting.leaves import find_leaves, find_swings
+from scanplan.plan.corrections.things import fit_scale
+from scanplan.report.wording import state_lengths
+from scanplan.store import schemas, tables
+
+
+@pytest.fixture
+def plan(tmp_path):
+    return write_plan(tmp_path)
+
+
+def test_a_wall_ends_as_high_as_said(plan):
+    found = corrected(plan, {"element": "wall", "at": [4.05, 0.5], "height_m": 1.2})
+    assert found.heights_m.tolist() == [2.5, 2.5, 2.5, 2.5, 2.5, 1.2]
+
+
+@pytest.mark.parametrize(
+    ("opens", "end", "block"),
+    [([3.2, 1.0], [3.15, 1.0], "SWING-LEFT"), ([5.0, 1.9], [4.95, 1.9], "SWING-LEFT"),
+     ([3.2, 1.9], [3.15, 1.9], "SWING-RIGHT")],
+)  # fmt: skip
+def test_a_leaf_hangs_at_the_nearer_jamb_on_the_side_of_the_place(plan, opens, end, block):
+    found = corrected(plan, {"element": "opening", "at": [4.05, 1.45], "opens": opens})
+    (leaf_m,) = find_leaves(found.furniture)
+    hinge = [4.05, opens[1]]
+    assert sorted(np.round(leaf_m, 3).tolist()) == sorted([hinge, end])
+    assert find_swings(found)[1].block == block
+
+
+def test_a_leaf_of_a_window_is_told(plan):
+    found = corrected(plan, {"element": "opening", "at": [1.6, -0.1], "opens": [1, 1]})
+    (told,) = found.unmatched_corrections
+    assert "opening 2 is a window" in told and len(found.furniture["kind"]) == 1
+
+
+def test_what_stands_about_is_added_moved_renamed_and_removed(plan):
+    ground = [[1, 1], [2, 1], [2, 2], [1, 2]]
+    add = {"element": "furniture", "action": "add", "outline": ground, "kind": "column"}
+    found = corrected(plan, add)
+    assert found.furniture["kind"].tolist() == ["furniture", "column"]
+    assert found.furniture["area_m2"].tolist() == [0.5, 1.0] and found.n_corrections == 1
+    moved = corrected(plan, {"element": "furniture", "at": [3.5, 2.8], "outline": ground})
+    assert shapely.from_wkb(moved.furniture["geometry"][0]).equals(shapely.Polygon(ground))
+    named = corrected(plan, {"element": "furniture", "at": [3.5, 2.8], "kind": "column"})
+    assert named.furniture["kind"].tolist() == ["column"]
+    gone = corrected(plan, {"element": "furniture", "at": [3.5, 2.8], "action": "remove"})
+    assert len(gone.furniture["kind"]) == 0
+
+
+def test_who_said_it_stands_on_the_element_and_on_the_plan(plan):
+    said = {"by": "A. Bee", "when": "2026-03-01T09:30:00Z"}
+    found = corrected(plan, {"element": "room", "at": [5, 1], "use": "store", **said})
+    assert found.rooms["use"].tolist() == ["", "store"]
+    assert found.rooms["corrected"].tolist() == ["", "changed by hand, A. Bee, 2026-03-01"]
+    assert found.corrected_by == "A. Bee, 2026-03-01"
+
+
+def test_a_settled_room_leaves_the_other_to_be_checked(plan):
+    found = corrected(plan, {"element": "room", "at": [1, 1], "action": "settle"})
+    # the south wall runs along the larger room for most of its length
+    by = ["checked by hand", "", "", "checked by hand", "checked by hand", "checked by hand"]
+    assert found.walls["corrected"].tolist() == by
+    assert found.walls["verify"].tolist() == [False, False, True, False, False, False]
+    assert found.openings["corrected"].tolist() == ["checked by hand"] * 3
+    assert found.rooms["corrected"].tolist() == ["checked by hand", ""]
+
+
+def test_a_room_is_named_and_settled(plan):
+    found = corrected(
+        plan,
+        {"element": "room", "at": [1, 1], "name": "Foyer"},
+        {"element": "room", "at": [1, 1], "action": "settle"},
+    )
+    assert found.room_names == ["Foyer", "Room 1"] and found.n_corrections == 2
+
+
+def test_what_was_taped_is_held_against_faces(plan, caplog):
+    # 4 m from face to face, whatever the ends of the tape are off
+    tape = {"element": "length", "action": "add", "line": [[0.1, 1.0], [3.9, 1.0]]}
+    found = corrected(plan, tape | {"length_m": 4.004}, tape | {
+        "line": [[2.0, 0.05], [2.0, 2.8]], "length_m": 3.1, "sigma_m": 0.003})  # fmt: skip
+    assert np.round(found.taped_m, 6).tolist() == [[4.0, 4.004, 0.005], [3.0, 3.1, 0.003]]
+    told = [line for line in caplog.messages if "were taped" in line]
+    assert len([line for line in told if "entry 2: 3.000 m are drawn" in line]) == 1
+    assert not any("entry 1: " in line for line in told)
+    notes = tables.read_notes(plan["free"].parent / "corrected/free.parquet", schemas.FREE)
+    assert len(json.loads(notes["lengths"])) == 2
+    assert "-4, -100 mm" in state_lengths(found)
+
+
+def test_a_scale_is_the_mean_of_lengths_by_their_weight():
+    # 2 m and 4 m with equal sigma weigh 4 and 16: (4 * 1.01 + 16 * 1.02) / 20
+    scale, sigma = fit_scale([(2.0, 2.02, 0.01), (4.0, 4.08, 0.01)])
+    assert scale == pytest.approx(1.018) and sigma == pytest.approx(0.01 / 20**0.5)
