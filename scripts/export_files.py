@@ -16,6 +16,7 @@ from scanplan.exports.data import (
     element_tables,
     geopackage,
     mesh,
+    openplan,
     room_graph,
     wayfinding,
 )
@@ -85,6 +86,7 @@ def export_files(
             drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
         ),
         "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin),
+        "openplan": lambda: openplan.format_openplan(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),

@@ -124,6 +124,22 @@ class EditSession:
             self._begin()
         return {"revision": self._read()[1]}
 
+    def take(self, entries: Sequence[Any]) -> None:
+        """Save corrections that follow those that `state` tells, without a run.
+
+        Raises
+        ------
+        StageError
+            If an entry is wrong, or a run is at work here.
+        """
+        with self._guard:
+            if self._is_running():
+                raise StageError("a run is at work; take them once it has ended")
+            survey = self._read_page().get("survey", "")
+            before, _ = self._read()
+            self._write(entries, survey)
+            self._note(before, entries)
+
     def tell_run(self) -> dict[str, Any]:
         """Return how far the run is: `running`, `ended` of `total` stages, a `line`, an `error`."""
         with self._guard:
