@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
+from helpers import floorplan_making
 from helpers.correcting import corrected, write_plan
 from scanplan.exports.drafting.leaves import find_leaves, find_swings
 from scanplan.plan.corrections.things import fit_scale
@@ -101,3 +102,41 @@ def test_a_scale_is_the_mean_of_lengths_by_their_weight():
     # 2 m and 4 m with equal sigma weigh 4 and 16: (4 * 1.01 + 16 * 1.02) / 20
     scale, sigma = fit_scale([(2.0, 2.02, 0.01), (4.0, 4.08, 0.01)])
     assert scale == pytest.approx(1.018) and sigma == pytest.approx(0.01 / 20**0.5)
+
+
+def test_a_room_that_goes_around_something_is_parted_by_two_lines(plan):
+    # around a core of 1 m x 1 m in the larger room
+    ring = shapely.Polygon(shapely.box(0, 0, 4, 3).exterior, [shapely.box(1.5, 1, 2.5, 2).exterior])
+    rooms = floorplan_making.rooms([ring, floorplan_making.ROOMS[1]])
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    west = {"element": "room", "action": "split", "line": [[0, 1.4], [1.5, 1.4]]}
+    east = {"element": "room", "action": "split", "line": [[2.5, 1.5], [4, 1.5]]}
+    found = corrected(plan, west, east)
+    assert sorted(found.rooms["area_m2"].round(3)) == [5.35, 5.65, 9.0]
+    assert list(found.unmatched_corrections) == [] and found.n_corrections == 2
+    assert (found.openings["wall"] == -1).sum() == 2
+    (told,) = corrected(plan, west).unmatched_corrections
+    assert "does not part the room" in told
+
+
+def test_a_line_that_passes_a_corner_parts_a_room(plan):
+    # an L: its line runs a hair above the corner, and on below the bar
+    shape = shapely.Polygon([(0, 0), (4, 0), (4, 3), (2, 3), (2, 1), (0, 1)])
+    rooms = floorplan_making.rooms([shape, floorplan_making.ROOMS[1]])
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    line = [[2.02, 0.98], [4.0, 0.98]]
+    found = corrected(plan, {"element": "room", "action": "split", "line": line})
+    assert sorted(found.rooms["area_m2"].round(1)) == [4.0, 4.0, 9.0]
+
+
+def test_a_line_through_what_stands_in_a_room_parts_it(plan):
+    # a shaft of 1 m x 1 m in the middle of the line
+    shape = shapely.Polygon(
+        shapely.box(0, 0, 4, 3).exterior, [shapely.box(1.5, 1, 2.5, 2).exterior]
+    )
+    rooms = floorplan_making.rooms([shape, floorplan_making.ROOMS[1]])
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    line = [[0.1, 1.5], [3.9, 1.5]]
+    found = corrected(plan, {"element": "room", "action": "split", "line": line})
+    assert sorted(found.rooms["area_m2"].round(3)) == [5.5, 5.5, 9.0]
+    assert (found.openings["wall"] == -1).sum() == 2

@@ -231,6 +231,11 @@ def test_a_wall_that_the_editor_parted_is_one_wall(results):
     assert "0 changes" in told[0], entries_of(results)
 
 
+def test_a_room_that_the_editor_lost_stays(results):
+    told = taken(results, edited_json(results, lambda f: f["rooms"].pop()))
+    assert entries_of(results) == [] and "1 room that the editor lost" in told[-1]
+
+
 def test_what_no_correction_says_is_counted(results):
     def edit(floor):
         floor["stairs"].append({"id": "s"})

@@ -342,6 +342,11 @@ def _tell(change: Change) -> str:
     return f"{element.kind} {str(name)[:40]}{place}, {what}"
 
 
+def is_lost_room(change: Change) -> bool:
+    """Return whether a change is a room that is gone: where rooms follow from walls no edit."""
+    return change.kind == "room" and change.after is None
+
+
 def is_named_by_itself(change: Change) -> bool:
     """Return whether a change is a room that an editor found, and that nobody has named."""
     after = change.after

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -17,6 +18,7 @@ from scanplan.types import FilePath, FloatArray
 _PASSAGE = "opening"  # a door without a leaf
 _SWINGING = ("single", "double", "french")
 _GLASS_M = 0.3  # a fixed window that begins lower is a pane down to the floor
+_GLOBAL_ID = re.compile(r"[0-9A-Za-z_$]{22}")  # of a room that is a text: its name
 _OTHER = ("stairs", "annotations", "textAnnotations", "measurements", "entourage")
 _ELEMENTS = ("walls", "doors", "windows", "rooms", "furniture", "columns")
 
@@ -45,6 +47,7 @@ def read_openplan(path: FilePath) -> Drawing:
             *_read_openings(lists["doors"], walls, _describe_door),
             *_read_openings(lists["windows"], walls, _describe_window),
             *map(_read_room, lists["rooms"]),
+            *(_read_text(item) for item in lists["textAnnotations"] if _is_ours(item)),
             *map(_read_piece, lists["furniture"]),
             *map(_read_column, lists["columns"]),
         ]
@@ -52,6 +55,7 @@ def read_openplan(path: FilePath) -> Drawing:
     except (ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         fault = f"is no project of openPlan3D ({type(error).__name__}: {str(error)[:80]})"
         raise StageError(f"{path}: {fault}; export it again as a project") from None
+    lists["textAnnotations"] = [i for i in lists["textAnnotations"] if not _is_ours(i)]
     other = {name: len(lists[name]) for name in _OTHER if lists[name]}
     other |= {"further floors": len(floors) - 1} if len(floors) > 1 else {}
     return Drawing(elements, other, name)
@@ -108,6 +112,14 @@ def _read_room(item: Item) -> Element:
     facts["use"] = str(details.get("roomType") or "")
     facts["outside"] = str(item.get("roomType") == "outdoor")
     return Element("room", str(item["id"]), facts=facts)
+
+
+def _is_ours(item: Item) -> bool:
+    return bool(_GLOBAL_ID.fullmatch(str(item["id"])))
+
+
+def _read_text(item: Item) -> Element:
+    return Element("room", str(item["id"]), facts={"name": str(item["text"])})
 
 
 def _read_piece(item: Item) -> Element:

@@ -15,6 +15,7 @@ from scanplan.project import corrections_file, texts
 from scanplan.project.run.edit_session import EditSession
 from scanplan.types import FilePath
 
+_JSON = ".json"
 _WRONG_CALL = 2  # the exit status of shells' own commands where their arguments are wrong
 
 
@@ -64,6 +65,8 @@ def take_edits(path: Path, results: Path | None, by: str = "") -> list[str]:
     chosen = base.choose_base(path, edited, bases)
     found = differences.find_changes(bases[chosen], edited)
     changes = [change for change in found if not entries.is_named_by_itself(change)]
+    lost = [change for change in changes if suffix == _JSON and entries.is_lost_room(change)]
+    changes = [change for change in changes if change not in lost]
     plan = base.read_edited_plan(session.results)
     now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     stamp = {"when": now} | ({"by": texts.check_text("--by", by)} if by else {})
@@ -72,7 +75,9 @@ def take_edits(path: Path, results: Path | None, by: str = "") -> list[str]:
     taken = entries.take_changes(plan, changes, entries.Said(before, said, stamp))
     if taken.entries != before:
         session.take(taken.entries)
-    return [*_tell(taken, session.place, chosen), *_tell_other(edited, bases[chosen])]
+    kept = f"{say_count(len(lost), 'room')} that the editor lost with walls stay as they are"
+    told = [*_tell_other(edited, bases[chosen]), *([kept] if lost else [])]
+    return [*_tell(taken, session.place, chosen), *told]
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -132,7 +137,7 @@ def _read_dxf(path: FilePath) -> Drawing:
 
 
 _READERS: Mapping[str, Callable[[FilePath], Drawing]] = {
-    ".json": read_openplan,
+    _JSON: read_openplan,
     ".ifc": _read_ifc,
     ".dxf": _read_dxf,
 }

@@ -39,7 +39,8 @@ def format_openplan(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin | None
 
     Walls have their thickness and height, and end where the lines of others cross, so that rooms
     close; curved ones are in pieces of quadratic curves. Doors open as leaves were seen, else to
-    the left. What lies in no wall is left out, as are leaves.
+    the left. A room that walls do not close is a text, its name. What lies in no wall is left out,
+    as are leaves.
 
     Parameters
     ----------
@@ -58,18 +59,21 @@ def format_openplan(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin | None
         "level": 0,
         "elevation": 0,
         "walls": [_wall_item(wall) for wall in walls],
-        "rooms": [
-            _room_item(plan, ids, row, beside)
-            for row, beside in enumerate(list_around(walls, plan.areas))
-        ],
+        "rooms": [],
         "doors": [],
         "windows": [],
         "furniture": [],
         "stairs": [],
         "columns": [],
-        **{name: [] for name in ("guides", "measurements", "annotations", "textAnnotations")},
+        "textAnnotations": [],
+        **{name: [] for name in ("guides", "measurements", "annotations")},
         "groups": [],
     }
+    for row, beside in enumerate(list_around(walls, plan.areas)):
+        if beside:
+            floor["rooms"].append(_room_item(plan, ids, row, beside))
+        else:
+            floor["textAnnotations"].append(_text_item(plan, ids, row))
     swings = find_swings(plan)
     for row, kind in enumerate(plan.openings["type"].tolist()):
         hosts = [wall for wall in walls if wall.row == plan.hosts[row] and plan.hosts[row] >= 0]
@@ -131,6 +135,13 @@ def _room_item(plan: FloorPlan, ids: ElementIds, row: int, walls: list[str]) -> 
         "area": round(float(plan.rooms["area_m2"][row]), 2),
     }
     return item | ({"details": {"roomType": use}} if use else {})
+
+
+def _text_item(plan: FloorPlan, ids: ElementIds, row: int) -> Item:
+    """Return the name of a room as a text, where the editor finds no room by its walls."""
+    place = place_point([plan.rooms["x_m"][row], plan.rooms["y_m"][row]])
+    style = {"fontSize": 16, "color": "#1e293b", "rotation": 0}
+    return {"id": ids["room"][row], **place, "text": plan.room_names[row], **style}
 
 
 def _opening_item(plan: FloorPlan, row: int, hosts: list[DrawnWall]) -> Item:

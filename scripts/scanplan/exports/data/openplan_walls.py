@@ -65,7 +65,8 @@ def draw_walls(plan: FloorPlan, ids: Sequence[str]) -> list[DrawnWall]:
 def list_around(walls: Sequence[DrawnWall], areas: Array) -> list[list[str]]:
     """Return the keys of the walls around each room, as the editor knows a room by them.
 
-    It finds rooms as what lines of walls enclose. Of a room that they do not, none are returned.
+    It finds rooms as what lines of walls enclose. Of a room that they do not, or that is the lesser
+    part of what they do, none are returned.
 
     Parameters
     ----------
@@ -77,7 +78,8 @@ def list_around(walls: Sequence[DrawnWall], areas: Array) -> list[list[str]]:
     for area in areas:
         shared = shapely.area(overlays.intersect_areas(enclosed, area))
         best = int(np.argmax(shared)) if len(shared) else -1
-        if best < 0 or shared[best] < area.area / 2:
+        least_m2 = max(area.area, enclosed[best].area) / 2 if best >= 0 else np.inf
+        if best < 0 or shared[best] < least_m2:
             found.append([])
             continue
         edge = overlays.buffer_shapes(shapely.boundary(enclosed[best]), _EDGE_M)
@@ -113,7 +115,9 @@ def _join_ends(row: int, lines_m: FloatArray, is_bent: np.ndarray) -> FloatArray
         for end, place_m in enumerate((0.0, length_m)):
             if beside <= _JOIN_M and abs(at_m - place_m) < best_m[end]:
                 best_m[end], reach_m[end] = abs(at_m - place_m), at_m
-    return start_m + reach_m[:, None] * along
+    # both ends of a short wall may be nearest to one other's line
+    kept_m = reach_m if reach_m[1] - reach_m[0] > length_m / 2 else np.array([0.0, length_m])
+    return start_m + kept_m[:, None] * along
 
 
 def _draw_pieces(wall: DrawnWall, centre_m: FloatArray) -> list[DrawnWall]:

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
+from scanplan.plan import floorplan
 from scanplan.plan.corrections import added, changed, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
@@ -28,6 +29,7 @@ _TAPE_M = 0.005
 _OFF = 3.0
 """Standard deviations by which a taped length is off that is told."""
 
+_ON_LINE_M = 0.01  # what rounding leaves between a line and the passage that it became
 _DAY = 10  # characters of a moment: its year, month and day
 _FARTHEST_M = 100.0
 """From the plan to a wall that is added: a part of the building that no scan shows is nearer."""
@@ -82,9 +84,14 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         if correction.action == "add":
             _add(rows, correction, outcome)
     # walls are what parts them, and names are of the rooms that are left
+    pending: list[Correction] = []
     for correction in said:
         if correction.action in OUTLINES:
-            _draw_outline(rows, correction, outcome)
+            _draw_outline(rows, correction, pending, outcome)
+    outcome.unmatched += [
+        _tell_outline(correction, "does not part the room from wall to wall")
+        for correction in pending
+    ]
     _apply_found(rows, of_rooms, outcome)
     _apply_found(rows, [c for c in said if c.action == SETTLE], outcome)
     _check_lengths(rows, [c for c in corrections if c.element == LENGTH], outcome)
@@ -189,17 +196,39 @@ def _check_lengths(rows: PlanRows, taped: Sequence[Correction], outcome: Outcome
             outcome.told.append(f"{correction.entry}: {by}, {abs(off):.1f} sigma apart; {remedy}")
 
 
-def _draw_outline(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
-    """Part a room, or join two."""
+def _draw_outline(
+    rows: PlanRows, correction: Correction, pending: list[Correction], outcome: Outcome
+) -> None:
+    """Part a room, or join two; a line that parts none waits for one with which it does."""
     if correction.action == "split":
-        fault = outlines.split_room(rows, np.array(correction.line_m), state_said(correction))
+        waiting_m = [np.array(other.line_m) for other in pending]
+        line_m = np.array(correction.line_m)
+        fault = outlines.split_room(rows, line_m, state_said(correction), waiting_m)
+        if fault is None:
+            n_waiting = len(pending)
+            pending[:] = [other for other in pending if not _is_drawn(rows, other)]
+            outcome.n_applied += n_waiting - len(pending)
+        elif outlines.find_parted(rows, line_m) is not None:
+            pending.append(correction)
+            return
     else:
         places_m = np.array(correction.at_m), np.array(correction.with_m)
         fault = outlines.merge_rooms(rows, *places_m, state_said(correction))
     outcome.n_applied += fault is None
     if fault:
-        x_m, y_m = correction.at_m
-        outcome.unmatched.append(f"{correction.entry}: ({x_m:g}, {y_m:g}) {fault}: not applied")
+        outcome.unmatched.append(_tell_outline(correction, fault))
+
+
+def _is_drawn(rows: PlanRows, split: Correction) -> bool:
+    """Return whether a line that parts a room is a passage of the plan."""
+    middle = shapely.Point(split.at_m)
+    passages = [row for row in rows.openings if row["wall"] < 0]
+    return any(floorplan.draw_axis(row).distance(middle) < _ON_LINE_M for row in passages)
+
+
+def _tell_outline(correction: Correction, fault: str) -> str:
+    x_m, y_m = correction.at_m
+    return f"{correction.entry}: ({x_m:g}, {y_m:g}) {fault}: not applied"
 
 
 def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
