@@ -12,6 +12,7 @@ import shapely
 import yaml
 
 from helpers.editing import entries_of, make_results, run_again, taken
+from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.dxf_reading import read_facts
 from scanplan.errors import StageError
 from scanplan.exports.drafting.leaves import find_swings
@@ -383,6 +384,25 @@ def test_a_wall_moved_by_its_line_in_the_drawing(results, name):
     (entry,) = entries_of(results)
     assert [end[0] for end in entry["line"]] == pytest.approx([4.25, 4.25], abs=0.001)
     assert run_again(results).walls["x0_m"][5] == pytest.approx(4.25)
+
+
+def stretch_inner_wall(document, name):
+    """Move what is drawn of the sides of the wall between both rooms by 0.2 m to the east."""
+    per_m = 1 if name.startswith("presentation") else 1000
+    for entity in document.modelspace().query("LWPOLYLINE"):
+        if not read_facts(entity) and kind_of_layer(entity.dxf.layer) == "wall":
+            points = [
+                (x + 0.2 * per_m * (3.9 < x / per_m < 4.2), y, bulge)
+                for x, y, bulge in entity.get_points("xyb")
+            ]
+            entity.set_points(points, format="xyb")
+
+
+@DRAWINGS
+def test_a_wall_moved_by_its_sides_in_the_drawing(results, name):
+    taken(results, edited_dxf(results, lambda d: stretch_inner_wall(d, name), name))
+    (entry,) = entries_of(results)
+    assert [end[0] for end in entry["line"]] == pytest.approx([4.25, 4.25], abs=0.001)
 
 
 @DRAWINGS

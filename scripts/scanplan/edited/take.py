@@ -15,7 +15,7 @@ from scanplan.project import corrections_file, texts
 from scanplan.project.run.edit_session import EditSession
 from scanplan.types import FilePath
 
-_JSON = ".json"
+_JSON, _DXF = ".json", ".dxf"
 _WRONG_CALL = 2  # the exit status of shells' own commands where their arguments are wrong
 
 
@@ -63,6 +63,8 @@ def take_edits(path: Path, results: Path | None, by: str = "") -> list[str]:
         names = " or ".join(base.FILES[suffix])
         raise StageError(f"{folder}/plan: has no {names}; run it with that format")
     chosen = base.choose_base(path, edited, bases)
+    if suffix == _DXF:
+        edited = _follow_sides(chosen, path, bases[chosen], edited)
     found = differences.find_changes(bases[chosen], edited)
     changes = [change for change in found if not entries.is_named_by_itself(change)]
     lost = [change for change in changes if suffix == _JSON and entries.is_lost_room(change)]
@@ -120,6 +122,13 @@ def _tell_other(edited: Drawing, before: Drawing) -> list[str]:
     return [f"not taken, as no correction says it: {told}"] if told else []
 
 
+def _follow_sides(chosen: Path, path: Path, base_drawing: Drawing, edited: Drawing) -> Drawing:
+    from scanplan.edited.dxf_reading import list_sides
+    from scanplan.edited.side_strips import follow_sides
+
+    return follow_sides(base_drawing, edited, (list_sides(chosen), list_sides(path)))
+
+
 def _read_ifc(path: FilePath) -> Drawing:
     try:
         from scanplan.edited.ifc_reading import read_ifc
@@ -139,7 +148,7 @@ def _read_dxf(path: FilePath) -> Drawing:
 _READERS: Mapping[str, Callable[[FilePath], Drawing]] = {
     _JSON: read_openplan,
     ".ifc": _read_ifc,
-    ".dxf": _read_dxf,
+    _DXF: _read_dxf,
 }
 
 if __name__ == "__main__":
