@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.plan import planning
-from scanplan.plan.corrections import applying, georeference, rows, things
+from scanplan.plan import planning, taped_lengths
+from scanplan.plan.corrections import applying, georeference, rows
 from scanplan.project import corrections_file
 from scanplan.project.corrections_file import Correction
 from scanplan.stage import log
@@ -51,7 +51,7 @@ def correct_plan(
         notes |= {"georeference": georeference.format_reference(reference)}
         placed = f"; {len(points)} reference points agree within {reference.residual_m:.2f} m"
     if outcome.lengths_m:
-        scale, sigma = things.fit_scale(outcome.lengths_m)
+        scale, sigma = taped_lengths.fit_scale(outcome.lengths_m)
         notes |= {"lengths": json.dumps(outcome.lengths_m)}
         by_tape = f"{100 * (scale - 1):+.2f} % longer, within {100 * sigma:.2f} %"
         n_lengths = len(outcome.lengths_m)

@@ -32,10 +32,15 @@ def make_results(root):
     return results
 
 
+def read_plan(folder):
+    """The plan of the tables in a folder."""
+    paths = {name: folder / f"{name}.parquet" for name in planning.TABLES}
+    return floorplan_files.read_floorplan(paths, "office")
+
+
 def export(results, folder):
     """Write the files that may be edited, of the tables in a folder."""
-    paths = {name: folder / f"{name}.parquet" for name in planning.TABLES}
-    plan = floorplan_files.read_floorplan(paths, "office")
+    plan = read_plan(folder)
     known = element_ids.no_known()
     kept = results / "plan/known_elements.parquet"
     if kept.exists():
@@ -76,12 +81,12 @@ def entries_of(results):
     return [{k: v for k, v in entry.items() if k not in ("when", "by")} for entry in entries]
 
 
-def run_again(results):
-    """The plan with the corrections carried out, and its files made anew of it."""
+def run_again(results, *, with_files=False):
+    """The plan with the corrections carried out, and its files made anew of it if wanted."""
     from correct_plan import correct_plan
 
     folder = results / "plan"
     plan = {name: folder / f"{name}.parquet" for name in planning.TABLES}
     outputs = {name: folder / f"corrected/{name}.parquet" for name in planning.TABLES}
     correct_plan(results.parents[1] / "rec/corrections.yaml", plan, outputs)
-    return export(results, folder / "corrected")
+    return export(results, folder / "corrected") if with_files else read_plan(folder / "corrected")

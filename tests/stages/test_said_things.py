@@ -9,7 +9,7 @@ import shapely
 from helpers import floorplan_making
 from helpers.correcting import corrected, write_plan
 from scanplan.exports.drafting.leaves import find_leaves, find_swings
-from scanplan.plan.corrections.things import fit_scale
+from scanplan.plan.taped_lengths import fit_scale
 from scanplan.report.wording import state_lengths
 from scanplan.store import schemas, tables
 

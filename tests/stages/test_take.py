@@ -128,7 +128,7 @@ def test_an_edit_in_the_editor_is_one_correction(results, edit, expected):
     taken(results, edited_json(results, edit))
     (entry,) = entries_of(results)
     assert {k: v for k, v in entry.items() if k not in ("element", "at")} == expected
-    plan = run_again(results)
+    plan = run_again(results, with_files=True)
     assert plan.unmatched_corrections == () or plan.unmatched_corrections == []
     # what was taken is no difference any more
     again = taken(results, results / "plan/plan.openplan3d.json")
@@ -162,7 +162,7 @@ def test_a_leaf_that_was_turned_in_the_editor(results, direction, y, flip, side)
         return
     (entry,) = entries
     assert entry["opens"] == pytest.approx([4.05 + side * 0.9, y], abs=0.001)
-    plan = run_again(results)
+    plan = run_again(results, with_files=True)
     assert find_swings(plan).keys() == {1}
     project = json.loads((results / "plan/plan.openplan3d.json").read_text())
     floor = project["floors"][0]
@@ -184,7 +184,7 @@ def test_a_wall_and_a_door_in_it_drawn_in_the_editor(results):
     assert wall == {"element": "wall", "action": "add", "line": [[2.0, 0.0], [2.0, 3.0]],
                     "thickness_m": 0.12}  # fmt: skip
     assert (door["kind"], door["line"]) == ("door", [[2.0, 1.1], [2.0, 1.9]])
-    plan = run_again(results)
+    plan = run_again(results, with_files=True)
     assert plan.walls["thickness_m"][-1] == 0.12 and plan.openings["wall"][-1] == 6
     again = taken(results, results / "plan/plan.openplan3d.json")
     assert "0 changes" in again[0]
@@ -480,7 +480,7 @@ def test_what_was_said_before_stays_and_is_joined(results):
     named = {"element": "room", "at": [5, 1], "name": "Foyer", "number": "2.14"}
     opening = {"element": "opening", "at": [4.1, 1.4], "kind": "door", "lintel_m": 2.05}
     write_entries(results, *reference, named, opening)
-    run_again(results)
+    run_again(results, with_files=True)
     taken(results, edited_json(results, lambda f: edit_door(f, width=100)))
     assert entries_of(results) == [*reference, named, {**opening, "width_m": 1.0}]
     taken(results, edited_json(results, lambda f: f["rooms"][1].update(name="Bar")))
@@ -491,7 +491,7 @@ def test_what_was_said_before_stays_and_is_joined(results):
 def test_what_was_added_before_is_moved_and_taken_out(results):
     added = {"element": "wall", "action": "add", "line": [[1, 2], [3, 2]], "thickness_m": 0.2}
     write_entries(results, added)
-    run_again(results)
+    run_again(results, with_files=True)
 
     def edit(floor):
         (wall,) = [w for w in floor["walls"] if w["start"]["y"] == w["end"]["y"] == -200]
@@ -511,7 +511,7 @@ def test_what_was_added_before_is_moved_and_taken_out(results):
 
 def test_a_removed_wall_that_was_moved_before_is_removed(results):
     write_entries(results, {"element": "wall", "at": [4.05, 0.5], "line": [[4.2, 0], [4.2, 3]]})
-    run_again(results)
+    run_again(results, with_files=True)
 
     def edit(floor):
         (wall,) = [w for w in floor["walls"] if w["start"]["x"] == w["end"]["x"] == 420]
@@ -520,7 +520,7 @@ def test_a_removed_wall_that_was_moved_before_is_removed(results):
 
     taken(results, edited_json(results, edit))
     assert entries_of(results) == [{"element": "wall", "at": [4.05, 0.5], "action": "remove"}]
-    assert 5 not in run_again(results).walls["wall"]
+    assert 5 not in run_again(results, with_files=True).walls["wall"]
 
 
 # --- what is refused ---

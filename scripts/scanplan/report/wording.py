@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.plan import floorplan
-from scanplan.plan.corrections.things import fit_scale
+from scanplan.plan.taped_lengths import fit_scale
 from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts

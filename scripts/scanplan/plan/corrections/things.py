@@ -1,7 +1,5 @@
 """What a person says stands in rooms: furniture, columns, leaves of doors; and settled rooms."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import shapely
 
@@ -127,20 +125,6 @@ def tell_length(
 
 
 _FACING = 0.9  # cosine: a tape is held square to a surface, within 25 degrees
-
-
-def fit_scale(lengths_m: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """Return by how much a plan is to be multiplied to agree with a tape, and its sigma.
-
-    Least squares, each taped length by its weight.
-
-    Parameters
-    ----------
-    lengths_m : sequence of (drawn, taped, sigma)
-    """
-    drawn_m, taped_m, sigma_m = np.array(lengths_m, float).T
-    information = float(np.sum((drawn_m / sigma_m) ** 2))
-    return float(np.sum(drawn_m * taped_m / sigma_m**2)) / information, information**-0.5
 
 
 def _is_leaf_of(row: Row, around: shapely.Polygon) -> bool:
