@@ -140,3 +140,16 @@ def test_a_line_through_what_stands_in_a_room_parts_it(plan):
     found = corrected(plan, {"element": "room", "action": "split", "line": line})
     assert sorted(found.rooms["area_m2"].round(3)) == [5.5, 5.5, 9.0]
     assert (found.openings["wall"] == -1).sum() == 2
+
+
+def test_three_lines_to_one_place_make_three_rooms(plan):
+    # a star of lines in the larger room, none of which parts it alone
+    ends = ([0.0, 0.0], [4.0, 0.0], [2.0, 3.0])
+    lines = [{"element": "room", "action": "split", "line": [end, [2.0, 1.0]]} for end in ends]
+    found = corrected(plan, *lines)
+    # below a triangle of 4 m x 1 m; on both sides of its tip the rest
+    assert sorted(found.rooms["area_m2"].round(3)) == [2.0, 5.0, 5.0, 9.0]
+    assert list(found.unmatched_corrections) == [] and found.n_corrections == 3
+    passages = found.openings["wall"] == -1
+    sides = [found.openings[side][passages].tolist() for side in ("room_a", "room_b")]
+    assert sorted(map(sorted, zip(*sides, strict=True))) == [[0, 2], [0, 3], [2, 3]]

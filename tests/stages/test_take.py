@@ -16,6 +16,7 @@ from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.dxf_reading import read_facts
 from scanplan.errors import StageError
 from scanplan.exports.drafting.leaves import find_swings
+from scanplan.project.run.command import main
 
 FILES = ("plan.openplan3d.json", "plan.ifc", "presentation.ifc", "plan.dxf", "presentation.dxf")
 
@@ -541,6 +542,43 @@ def test_what_is_no_project_of_the_plan_ends_in_one_line(results, text, fault):
     with pytest.raises(StageError) as told:
         taken(results, path)
     assert str(told.value).startswith(f"{path}: ") and fault in str(told.value)
+
+
+KEYS = {
+    "walls": ("start", "end", "thickness"),
+    "doors": ("wallId", "position", "width"),
+    "furniture": ("position",),
+}
+
+
+@pytest.mark.parametrize(("table", "key"), [(t, k) for t, keys in KEYS.items() for k in keys])
+@pytest.mark.parametrize("value", [None, [], "x", {"x": 1e999, "y": 0}, True])
+def test_a_value_that_is_none_is_told_in_one_line(made, tmp_path, table, key, value):
+    project = json.loads((made / "plan/plan.openplan3d.json").read_text())
+    project["floors"][0][table][0][key] = value
+    path = tmp_path / "edited.json"
+    path.write_text(json.dumps(project))
+    with pytest.raises(StageError) as told:
+        taken(made, path)
+    assert str(told.value).startswith(f"{path}: ") and "\n" not in str(told.value)
+
+
+def test_a_wall_without_thickness_is_told_and_nothing_is_taken(results):
+    path = edited_json(results, lambda floor: floor["walls"][0].update(thickness=0))
+    with pytest.raises(StageError, match="thickness_m is 0"):
+        taken(results, path)
+    assert entries_of(results) == []
+
+
+def test_the_command_tells_what_it_took_and_what_is_wrong(results, capfd):
+    path = edited_json(results, move_wall)
+    assert main(["take", str(path), str(results), "--by", "A. Bee"]) == 0
+    assert "1 change of plan.openplan3d.json taken" in capfd.readouterr().out
+    assert main(["take", "none.ifc", str(results)]) == 2
+    told = capfd.readouterr().err
+    assert told == "scanplan: none.ifc: does not exist; name the edited file\n"
+    (line,) = (results.parents[1] / "rec/corrections.log").read_text().splitlines()
+    assert json.loads(line)["said"]["by"] == "A. Bee"
 
 
 def test_a_file_of_another_kind_or_none_is_refused(results):

@@ -17,6 +17,7 @@ from scanplan.types import FilePath, FloatArray
 
 _PASSAGE = "opening"  # a door without a leaf
 _SWINGING = ("single", "double", "french")
+_MOST_BYTES = 2**26  # of a project, with the pictures that people lay into it
 _GLASS_M = 0.3  # a fixed window that begins lower is a pane down to the floor
 _GLOBAL_ID = re.compile(r"[0-9A-Za-z_$]{22}")  # of a room that is a text: its name
 _OTHER = ("stairs", "annotations", "textAnnotations", "measurements", "entourage")
@@ -33,7 +34,7 @@ def read_openplan(path: FilePath) -> Drawing:
     StageError
         If it is no project, or a number of it is none.
     """
-    text = user_file.read_text(path, "save the project as JSON")
+    text = user_file.read_text(path, "save the project as JSON", _MOST_BYTES)
     try:
         project = json.loads(text)
         floors = project["floors"]
@@ -79,7 +80,10 @@ def _read_openings(
         assert wall.line_m is not None
         start_m, end_m = wall.line_m
         middle_m = start_m + _number(item["position"]) * (end_m - start_m)
-        half_m = _metres(item["width"]) / 2 * wall.along
+        width_m = _metres(item["width"])
+        if width_m <= 0:
+            raise ValueError(f"opening {item['id']} has no width")
+        half_m = width_m / 2 * wall.along
         line_m = np.array([middle_m - half_m, middle_m + half_m])
         facts = describe(item, line_m)
         yield Element("opening", str(item["id"]), line_m, facts=facts, host=wall.key)

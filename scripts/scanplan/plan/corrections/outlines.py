@@ -44,29 +44,35 @@ def split_room(
     outline = shapely.from_wkb(room["geometry"])
     inside = [other for other in others_m if find_parted(rows, other) is room]
     cuts: list[shapely.LineString] = []
-    parts: list[BaseGeometry] = []
+    parts: list[shapely.Polygon] = []
+    # one line makes two rooms, several may make more
+    most = 2 + len(inside)
     # a line that passes a corner, made longer, ends in the open
     for draw in (_cut_through, _snap_to):
-        if len(parts) != 2:
+        if not 2 <= len(parts) <= most:
             cuts = [cut for other in (line_m, *inside) for cut in draw(outline, other)]
-            parts = _part(outline, cuts)
-    if len(parts) != 2 or parts[1].area < _SMALLEST_M2:
+            parts = _join_slivers(_part(outline, cuts)) if inside else _part(outline, cuts)
+    if not 2 <= len(parts) <= most or parts[-1].area < _SMALLEST_M2:
         return "does not part the room from wall to wall"
-    number, other = room["room"], rows.next_number("room")
-    kept = parts[0]
-    rows.rooms.append(room | {"room": other, "name": "", "use": ""} | _shape_columns(parts[1]))
-    room |= _shape_columns(kept)
-    for row in (room, rows.rooms[-1]):
-        row["corrected"] = said
+    number, first = room["room"], rows.next_number("room")
+    numbers = [number, *range(first, first + len(parts) - 1)]
+    for part, other in zip(parts[1:], numbers[1:], strict=True):
+        own = {"room": other, "name": "", "use": "", "corrected": said}
+        rows.rooms.append(room | own | _shape_columns(part))
+    room |= _shape_columns(parts[0]) | {"corrected": said}
+    shapes = np.array(parts, object)
     for opening in rows.openings:
         place = shapely.Point(added.ends_of(opening).mean(axis=0))
-        is_others = parts[1].distance(place) < kept.distance(place)
-        for side in ("room_a", "room_b") if is_others else ():
-            opening[side] = other if opening[side] == number else opening[side]
+        nearest = numbers[int(np.argmin(shapely.distance(shapes, place)))]
+        for side in ("room_a", "room_b"):
+            opening[side] = nearest if opening[side] == number else opening[side]
     for cut in cuts:
         ends_m = shapely.get_coordinates(cut)[[0, -1]]
+        far_m = shapely.distance(shapes, cut.interpolate(0.5, normalized=True))
+        sides = [numbers[row] for row in np.argsort(far_m, kind="stable")[:2].tolist()]
         passage = {"opening": rows.next_number("opening"), "wall": -1, "type": "passage"}
-        passage |= {"room_a": number, "room_b": other, "thickness_m": np.nan, "corrected": said}
+        passage |= dict(zip(("room_a", "room_b"), sorted(sides), strict=True))
+        passage |= {"thickness_m": np.nan, "corrected": said}
         passage["width_m"] = float(np.hypot(*(ends_m[1] - ends_m[0])))
         row = added.blank_row(schemas.OPENINGS) | added.end_columns(ends_m) | passage
         rows.openings.append(row)
@@ -119,7 +125,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
     return None
 
 
-def _part(outline: BaseGeometry, cuts: Sequence[shapely.LineString]) -> list[BaseGeometry]:
+def _part(outline: BaseGeometry, cuts: Sequence[shapely.LineString]) -> list[shapely.Polygon]:
     """Return what lines part a room into, the largest first."""
     parts = overlays.enclose_areas(
         shapely.get_parts(overlays.unite_lines([shapely.boundary(outline), *cuts]))
@@ -127,6 +133,19 @@ def _part(outline: BaseGeometry, cuts: Sequence[shapely.LineString]) -> list[Bas
     # what a hole of the room is, lies on neither side
     within = [part for part in parts if outline.covers(part.representative_point())]
     return sorted(within, key=lambda part: -part.area)
+
+
+def _join_slivers(parts: Sequence[shapely.Polygon]) -> list[shapely.Polygon]:
+    """Return parts with what lines that cross leave between them joined to what it borders most."""
+    whole = [part for part in parts if part.area >= _SMALLEST_M2]
+    for sliver in parts[len(whole) :]:
+        edge = shapely.boundary(sliver)
+        shared_m = [overlays.intersect_lines(edge, shapely.boundary(part)).length for part in whole]
+        best = int(np.argmax(shared_m)) if whole else -1
+        joined = overlays.unite_areas([whole[best], sliver]) if whole else None
+        if isinstance(joined, shapely.Polygon):
+            whole[best] = joined
+    return sorted(whole, key=lambda part: -part.area)
 
 
 def _snap_to(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.LineString]:
