@@ -24,7 +24,7 @@ $(if $(strip $(TWICE)),$(error ARGS: $(strip $(TWICE)) would take the place of D
 # every stage is a process, which would compile the package anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help run compare edit quick test tests test-slurm lint style types faults audit bench figures pictures settings
+.PHONY: help run compare edit quick test tests test-slurm lint style types faults audit bench figures mutants pictures settings
 .PHONY: environment kiss-icp clean
 .DEFAULT_GOAL := run
 
@@ -88,6 +88,9 @@ bench: environment ## the stages against the algorithms of the thesis written li
 
 figures: environment ## the house in figures; ARGS='OTHER_CHECKOUT .' compares, --places says where, --types counts errors
 	@$(BIN)/python tests/house_figures.py $(ARGS)
+
+mutants: environment ## the last commit's code changed at 60 places, and whether tests notice; ARGS="COUNT SEED --full"
+	@$(BIN)/python tests/mutants.py $(ARGS)
 
 pictures: environment ## the pictures of README.md from results/demo; ARGS='results/X X' the tour's
 	@$(BIN)/python tests/pictures.py $(ARGS)

@@ -7,7 +7,11 @@ from scanplan.types import FilePath
 
 
 def annotate_changes(
-    changes: FilePath, ids: FilePath, model: FilePath, annotated: FilePath
+    changes: FilePath,
+    ids: FilePath,
+    model: FilePath,
+    annotated: FilePath,
+    earlier: FilePath | None = None,
 ) -> None:
     """Write changes.ifc.
 
@@ -19,6 +23,8 @@ def annotate_changes(
         ids.parquet and plan.ifc of the later survey's plan.
     annotated : path-like
         File to write.
+    earlier : path-like, optional
+        ids.parquet of the earlier survey: what was there before bears the ids that it had.
 
     Raises
     ------
@@ -28,9 +34,17 @@ def annotate_changes(
     columns = tables.read_table(changes, schemas.CHANGES, allow_empty=True)
     known = tables.read_table(ids, schemas.ELEMENT_IDS, allow_empty=True)
     facts = model_facts.gather_changes(columns, known)
-    text = annotated_ifc.annotate_model(model, "Scanplan_Changes", facts)
+    carried: dict[str, str] = {}
+    if earlier is not None:
+        before = tables.read_table(earlier, schemas.ELEMENT_IDS, allow_empty=True)
+        carried = model_facts.carry_ids(columns, before, known)
+    stated = {guid: {**of, "id_in_plan": guid} for guid, of in facts.items()}
+    text = annotated_ifc.annotate_model(model, "Scanplan_Changes", stated, carried)
     atomic.write_text(annotated, text)
-    log.log_line(f"annotate_changes: {len(facts)} elements say what became of them")
+    log.log_line(
+        f"annotate_changes: {len(facts)} elements say what became of them, {len(carried)} bear the"
+        " ids that they had"
+    )
 
 
 if __name__ == "__main__":
@@ -40,4 +54,5 @@ if __name__ == "__main__":
             snakemake.input.ids,
             snakemake.input.model,
             snakemake.output.annotated,
+            snakemake.input.get("earlier") or None,
         )

@@ -1,6 +1,6 @@
 """Write how what was built differs from its design."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +17,6 @@ from scanplan.store import atomic, registered_scans, schemas, tables
 from scanplan.types import FilePath, Settings
 
 _PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
-_OF_MODELS = ("as_built.ifc", "deviations.bcf")
-"""What an earlier design has left, if it was a model."""
 
 
 def compare_design(
@@ -29,6 +27,7 @@ def compare_design(
     name: str,
     settings: Settings,
     limits: Mapping[str, Any],
+    unwanted: Iterable[FilePath] = (),
     version: str = "",
 ) -> None:
     """Write deviations.parquet, and the deviations as CSV, GeoJSON and drawing.
@@ -48,6 +47,8 @@ def compare_design(
         See `stage_settings.select_design`.
     limits : dict
         See `tolerance_file.read_tolerances`.
+    unwanted : iterable of path-like
+        Files to remove where they exist: those of an earlier design that was a model.
     version : str
         Of the software, for the title block.
 
@@ -56,8 +57,6 @@ def compare_design(
     StageError
         If the design is damaged, or the survey fits none of its storeys.
     """
-    for made in _OF_MODELS:
-        Path(outputs["table"]).with_name(made).unlink(missing_ok=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     files = {part: built[part] for part in _PLAN}
     plan = floorplan_files.read_floorplan(files, name, **assumed_m)
@@ -95,6 +94,8 @@ def compare_design(
         notes=deviation_table.state_design(found, allowed.title),
     )
     drawn = change_geojson.format_changes(title, "deviation", columns, "; ".join(summary[1:]))
+    for file in unwanted:
+        Path(file).unlink(missing_ok=True)
     atomic.write_text(outputs["csv"], element_tables.format_csv(rows))
     atomic.write_text(outputs["geojson"], drawn)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
@@ -119,5 +120,6 @@ if __name__ == "__main__":
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
             limits=snakemake.params.limits,
+            unwanted=snakemake.params.unwanted,
             version=code_files.state_version(),
         )

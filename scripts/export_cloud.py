@@ -1,42 +1,52 @@
-"""Write the registered points as a LAZ file."""
+"""Write the registered points as a LAZ file, and a picture of them from above."""
 
 import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 
+from scanplan.errors import StageError
 from scanplan.exports.data import point_cloud
+from scanplan.exports.data.cloud_picture import CloudPicture
 from scanplan.exports.model_origin import find_site
 from scanplan.plan.floorplan import GeoReference
+from scanplan.recordings.survey import open_colours
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, tables
-from scanplan.types import FilePath, Settings
+from scanplan.types import Array, FilePath, FloatArray, Settings
+
+_MARGIN_M = 1.0  # around the floor that was seen: walls, and what is against them
 
 
 def export_cloud(
     scans: FilePath,
     registration: FilePath,
     selection: FilePath,
-    output: FilePath,
+    free: FilePath,
+    outputs: Mapping[str, FilePath],
     *,
     settings: Settings,
-    free: FilePath | None = None,
+    recordings: Sequence[str] = (),
+    reading: Mapping[str, Any] | None = None,
     **stop: Any,
 ) -> None:
     """Write the points of all scans, or of those that make the plan.
 
     Parameters
     ----------
-    scans, registration, selection : path-like
-        scans.parquet, registration.parquet and selection/<method>.parquet.
-    output : path-like
-        cloud.laz, to write.
+    scans, registration, selection, free : path-like
+        scans.parquet, registration.parquet, selection/<method>.parquet and plan/free.parquet,
+        which states how reference points place the map.
+    outputs : dict of str to path-like
+        `cloud` and `picture`: cloud.laz and cloud.png, to write.
     settings : dict
         `scans`, `chosen` or `all`, and `cell_m`, see `point_cloud.write_laz`; `site`, see
         `model_origin.Site`.
-    free : path-like, optional
-        plan/free.parquet, which states how reference points place the map.
+    recordings, reading
+        As of `survey.open_survey`: what the points' colours are read from, if it has any.
     **stop
         How many scans are chosen, see `stopping.choose_n_scans`.
     """
@@ -45,14 +55,58 @@ def export_cloud(
     if settings["scans"] == "chosen":
         wanted = np.sort(stopping.read_chosen_scans(selection, **stop)[0])
     t_ns = int(registered_scans.read_registered_scans(registration).t_ns[-1])
-    note = "" if free is None else tables.read_note(free, schemas.FREE, "georeference")
-    measured = GeoReference(**json.loads(note)) if note else None
-    clouds = log.report_progress(store.scans(wanted), "export_cloud", total=len(wanted))
-    with atomic.replace_file(output) as temporary:
+    note = tables.read_note(free, schemas.FREE, "georeference")
+    site = find_site(GeoReference(**json.loads(note)) if note else None, settings["site"])
+    picture = _begin_picture(free)
+    with (
+        atomic.replace_file(outputs["cloud"]) as temporary,
+        open_colours(recordings, **(reading or {})) as read_colours,
+    ):
+        clouds = log.report_progress(store.scans(wanted), "export_cloud", total=len(wanted))
         n_points, n_kept = point_cloud.write_laz(
-            temporary, clouds, settings["cell_m"], t_ns, find_site(measured, settings["site"])
+            temporary,
+            _draw(_colour(clouds, read_colours), picture),
+            settings["cell_m"],
+            t_ns,
+            site,
+            coloured=read_colours is not None,
         )
-    log.log_line(f"export_cloud: {len(wanted)} scans, {n_kept:,} of {n_points:,} points")
+    atomic.write_bytes(outputs["picture"], picture.format_png())
+    coloured = "" if read_colours is None else " in their colours"
+    log.log_line(f"export_cloud: {len(wanted)} scans, {n_kept:,} of {n_points:,} points{coloured}")
+
+
+def _begin_picture(free: FilePath) -> CloudPicture:
+    """Return an empty picture of the ground around the floor that was seen."""
+    floor = shapely.from_wkb(tables.read_table(free, schemas.FREE)["geometry"])
+    low_high_m = shapely.total_bounds(floor) + np.array([-1, -1, 1, 1]) * _MARGIN_M
+    levels = [
+        float(tables.read_note(free, schemas.FREE, name) or "nan")
+        for name in ("floor_z_m", "ceiling_z_m")
+    ]
+    return CloudPicture(low_high_m, *levels)
+
+
+def _colour(
+    scans: Iterable[tuple[int, FloatArray]], read_colours: Callable[[int], Array | None] | None
+) -> Iterator[point_cloud.ScanPoints]:
+    """Yield scans with the colours of their points."""
+    for scan_id, xyz_m in scans:
+        rgb = None if read_colours is None else read_colours(scan_id)
+        if rgb is not None and len(rgb) != len(xyz_m):
+            raise StageError(
+                f"scan {scan_id}: {len(xyz_m)} points were registered, and the recording has now"
+                f" {len(rgb)}; {tables.RERUN_ALL}"
+            )
+        yield scan_id, xyz_m, rgb
+
+
+def _draw(
+    scans: Iterable[point_cloud.ScanPoints], picture: CloudPicture
+) -> Iterator[point_cloud.ScanPoints]:
+    for scan in scans:
+        picture.add(*scan[1:])
+        yield scan
 
 
 if __name__ == "__main__":
@@ -61,8 +115,10 @@ if __name__ == "__main__":
             snakemake.input.scans,
             snakemake.input.registration,
             snakemake.input.selection,
-            snakemake.output.cloud,
+            snakemake.input.free,
+            dict(snakemake.output.items()),
             settings=snakemake.params.settings,
-            free=snakemake.input.free,
+            recordings=snakemake.input.recordings,
+            reading=snakemake.params.reading,
             **snakemake.params.stop,
         )

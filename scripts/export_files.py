@@ -98,6 +98,7 @@ def export_files(
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
+    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site)
     writers["json"] = lambda: room_graph.format_room_graph(drawn, rows)
     for what in [what for what in outputs if what in writers]:
         content = writers[what]()

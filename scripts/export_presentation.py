@@ -69,6 +69,8 @@ def export_presentation(
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     title = f"Floor plan of {sheet.name}"
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title))
+    tiles = figure_files.format_pdf(drawing.draw_tiles(sheet), f"{title}, on A3")
+    atomic.write_bytes(outputs["tiles"], tiles)
     atomic.write_bytes(outputs["png"], figure_files.format_png(figures[0]))
     cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
     atomic.write_text(outputs["dxf"], cad)

@@ -8,7 +8,7 @@ from typing import Any
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files, corrections_file
 from scanplan.recordings.motion import pose_kind
-from scanplan.report import point_image
+from scanplan.report import point_image, solid_view
 from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
@@ -56,6 +56,7 @@ def write_report(
     plan = floorplan_files.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
     points = point_image.draw_point_image(_read_chosen_scans(files["scans"], survey), plan)
+    in_space = solid_view.pack_view(plan, _read_chosen_scans(files["scans"], survey))
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]
     folder = Path(output).parent
     beside = [os.path.relpath(path, folder) for path in files["results"]]
@@ -77,7 +78,7 @@ def write_report(
         version=f"Made by {code_files.state_version()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
-    text = report_page(sources, plan, survey, points, run)
+    text = report_page(sources, plan, survey, points, in_space, run)
     atomic.write_text(output, text)
     if short is not None:
         atomic.write_text(short, summarise_survey(plan, survey))

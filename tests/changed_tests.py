@@ -3,8 +3,9 @@
 Usage: changed_tests.py tests     test files, one a line
        changed_tests.py python    changed files to check the types of
 
-A changed helper has the unit tests that import it, directly or through the helpers of the tests, a
-stage has the tests that import it, a test has itself. Tests of whole runs are left to `make test`.
+A changed helper has the tests that import it, directly or through the helpers of the tests, or else
+those of the files that import it, and so on; a stage has the tests that import it, a test has
+itself. Tests of whole runs are left to `make test`.
 """
 
 import ast
@@ -22,6 +23,8 @@ ALWAYS = "tests/unit/test_house.py"
 SETTINGS = ("config/", "workflow/schemas/")
 OF_SETTINGS = ("tests/unit/test_settings.py", "tests/unit/test_dataset.py")
 BASES = ("main", "origin/main")
+MOST_NEAREST = 12
+"""Test files of what imports a changed file; that more use it is for `make test`."""
 
 
 def list_changed(root: Path) -> list[str]:
@@ -56,9 +59,31 @@ def list_tests(changed: Iterable[str], root: Path) -> list[str]:
     chosen = {ALWAYS} | (set(changed) & set(names.values()))
     if any(file.startswith(SETTINGS) for file in changed):
         chosen.update(OF_SETTINGS)
-    files = {root / file for file in changed if file.endswith(".py")}
-    chosen.update(names[path] for path in tests if files & used_files(path, root))
+    used = {path: used_files(path, root) for path in tests}
+    for file in changed:
+        if file.endswith(".py"):
+            chosen.update(names[path] for path in find_nearest(root / file, used, root))
     return sorted(name for name in chosen if (root / name).exists())
+
+
+def find_nearest(file: Path, used: dict[Path, set[Path]], root: Path) -> set[Path]:
+    """Return the tests that use a file, or else those of the nearest that import it."""
+    reached, added = {file}, {file}
+    while added:
+        found = {test for test, files in used.items() if files & added}
+        if found:
+            return found if file in added or len(found) <= MOST_NEAREST else set()
+        added = {path for path in root.glob("scripts/**/*.py") if _imports_any(path, added, root)}
+        added -= reached
+        reached |= added
+    return set()
+
+
+def _imports_any(path: Path, files: set[Path], root: Path) -> bool:
+    names = {file.stem for file in files}
+    text = path.read_text(encoding="utf-8")
+    # to parse all files takes seconds
+    return any(name in text for name in names) and bool(imported_files(path, root) & files)
 
 
 def used_files(test: Path, root: Path) -> set[Path]:

@@ -11,7 +11,7 @@ import random
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ import shapely.affinity
 import yaml
 
 from scanplan.changes import comparison
-from scanplan.changes.verdicts import GONE, MOVED, NEW, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, OPENED, SHUT, Change
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store import registered_scans, tables
@@ -47,6 +47,8 @@ SURVEYS = (
 TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 """Of a plan: what is compared."""
 _NEAR_M = 0.4  # of a change from where it was made: a wall moved by 30 cm, and what plans err by
+_SWUNG = {SHUT: GONE, OPENED: NEW}
+"""What else a door may be that is shut, or opened."""
 _FOUND = 0.5  # of the length of an edit that rows of its verdict cover
 _PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
 _PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
@@ -88,7 +90,7 @@ def evaluate(folder: Path, names: Sequence[str]) -> None:
     """Print precision and recall over all pairs of surveys before and after."""
     earlier = [name for name in names if name.startswith("a_")]
     later = [name for name in names if not name.startswith("a_")]
-    totals = [0] * 6
+    totals = [0] * 7
     for before in earlier:
         for after in later:
             found = _compare(folder, before, after)
@@ -99,10 +101,11 @@ def evaluate(folder: Path, names: Sequence[str]) -> None:
 
 
 def _say(counts: Sequence[int]) -> str:
-    right, told, found, doubted, made, wrongly_gone = counts
+    right, told, found, shut, doubted, made, wrongly_gone = counts
     return (
-        f"{right} of {told} told are right; {found} of {made} edits are told, {doubted} more as"
-        f" doubtful; {wrongly_gone} told as gone that are there"
+        f"{right} of {told} told are right; {found} of {made} edits are told, {shut} more as"
+        f" shut or walled up, {doubted} more as doubtful; {wrongly_gone} told as gone that are"
+        " there"
     )
 
 
@@ -120,13 +123,18 @@ def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> list[int]:
     made = [edit for edit in edits if edit.counts]
     seen = [edit for edit in made if not _is_unseen(edit, changes)]
     found = [edit for edit in seen if _is_found(edit, likely)]
-    told = [edit for edit in seen if _is_found(edit, changes)]
-    for edit in seen:
-        if edit not in found:
-            print(f"  missed: {edit.table} {edit.verdict} {edit.ends_m}")
+    lost = [edit for edit in seen if edit not in found]
+    states = [replace(c, verdict=_SWUNG[c.verdict]) for c in changes if c.verdict in _SWUNG]
+    shut = [edit for edit in lost if _is_found(edit, [c for c in states if c.p >= LIKELY])]
+    doubted = [edit for edit in lost if edit not in shut and _is_found(edit, changes)]
+    for edit in lost:
+        print(f"  missed: {edit.table} {edit.verdict} {edit.ends_m}{' (shut)' * (edit in shut)}")
+    for state in states:
+        if not any(_fits(state, edit) for edit in edits):
+            print(f"  swung: {state.verdict} {state.shape.wkt[:70]} {state.p:.2f}")
     gone = sum(c.verdict == GONE for c in wrong)
-    doubted = len(told) - len(found)
-    return [len(right), len(likely), len(found), doubted, len(seen), gone]
+    counts = [len(of) for of in (right, likely, found, shut, doubted, seen)]
+    return [*counts, gone]
 
 
 def _fits(change: Change, edit: Edit) -> bool:

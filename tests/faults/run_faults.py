@@ -16,6 +16,7 @@ import numpy as np
 
 from faults import (
     commands,
+    file_cases,
     foreign_results,
     judging,
     lying_drives,
@@ -41,6 +42,8 @@ def try_in_process(folder, tally, *, n_damaged, n_salvaged, n_messages, n_flips,
         *recording_cases.list_survey_cases(folder),
         *recording_cases.list_bomb_cases(folder),
         *recording_cases.list_scan_folder_cases(folder, n_files),
+        *file_cases.list_file_cases(folder, n_files),
+        *file_cases.list_hostile_cases(folder),
         *settings_cases.list_settings_cases(folder),
         *word_cases.list_word_cases(folder, n_drawn),
         *foreign_results.list_foreign_cases(folder),

@@ -41,6 +41,8 @@ class Page:
             [
                 find(), "--headless=new", "--remote-debugging-pipe", "--no-sandbox",
                 "--disable-gpu", "--no-first-run", "--disable-dev-shm-usage",
+                # WebGL without a graphics card
+                "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
                 "--disable-background-networking", f"--user-data-dir={folder}",
                 "about:blank",
             ],
@@ -100,15 +102,24 @@ class Page:
             self.mouse("mouseMoved", *place, button="left", buttons=1)
         self.mouse("mouseReleased", *end, button="left", clickCount=1)
 
-    def key(self, key):
+    def key(self, key, *, ctrl=False):
+        typed = {"Enter": "\r"}.get(key, key if len(key) == 1 and not ctrl else "")
         for kind in ("keyDown", "keyUp"):
             self.ask(
                 "Input.dispatchKeyEvent",
                 type=kind,
                 key=key,
                 code=key,
-                text=key if len(key) == 1 else "",
+                text=typed,
+                modifiers=2 * ctrl,
             )
+
+    def type(self, text):
+        self.ask("Input.insertText", text=text)
+
+    def load(self, script):
+        """Run a script for what it leaves behind."""
+        self.ask("Runtime.evaluate", expression=script)
 
     def screenshot(self, whole=False):
         """The bytes of a PNG of what is in view, or of the whole page."""

@@ -13,8 +13,11 @@ PAGE, CONTENT = 1024, 1020
 OF_XML = 24  # in the header: where the description begins, and its length
 
 
-def write_e57(path, poses, points):
-    """Write scans (n, 3) in their own frames with poses (4, 4); a row that is NaN is invalid."""
+def write_e57(path, poses, points, rgb=None):
+    """Write scans (n, 3) in their own frames with poses (4, 4); a row that is NaN is invalid.
+
+    Points of all scans may have the same colours (n, 3) of 0 to 255.
+    """
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     with pye57.E57(str(path), mode="w") as file:
@@ -23,6 +26,9 @@ def write_e57(path, poses, points):
             columns = dict(zip(("cartesianX", "cartesianY", "cartesianZ"), xyz_m.T, strict=True))
             data = {name: np.where(is_point, column, 0.0) for name, column in columns.items()}
             data["cartesianInvalidState"] = (2 * ~is_point).astype(np.int8)
+            if rgb is not None:
+                shades = zip(("colorRed", "colorGreen", "colorBlue"), rgb.T, strict=True)
+                data |= {name: shade.astype(np.uint8) for name, shade in shades}
             turn = Rotation.from_matrix(pose[:3, :3]).as_quat()
             file.write_scan_raw(data, rotation=turn[[3, 0, 1, 2]], translation=pose[:3, 3])
     return path

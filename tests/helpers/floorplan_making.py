@@ -129,9 +129,7 @@ def rooms(polygons=ROOMS):
         "y_m": np.array([p.centroid.y for p in polygons], float),
         "closed": np.ones(n, bool),
         "n_scans": np.full(n, 2, np.int32),
-        "name": np.full(n, "", object),
-        "use": np.full(n, "", object),
-        "corrected": np.full(n, "", object),
+        **{name: np.full(n, "", object) for name in ("name", "use", "corrected")},
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
     }
 
@@ -148,6 +146,7 @@ def furniture(polygons=PIECES, kind="furniture"):
     return {
         "furniture": np.arange(n, dtype=np.int32),
         "kind": np.full(n, kind, object),
+        "named": np.full(n, "", object),
         "area_m2": shapely.area(np.array(polygons, object)) if n else np.zeros(0),
         "z_min_m": np.full(n, 0.3),
         "z_max_m": np.full(n, 0.9),

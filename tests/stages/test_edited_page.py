@@ -374,8 +374,7 @@ def test_a_page_of_a_plan_without_doubts_is_an_editor_too(chromium, tmp_path):
 
 # what a run would do: the page of a plan with what was saved
 RUN = """
-import json, shutil, sys
-print(" 1/1 office correct_plan:  0.1 s  1 of 1 corrections applied", flush=True)
+import shutil, sys
 shutil.copy(sys.argv[1], sys.argv[2])
 """
 
@@ -443,7 +442,7 @@ def test_two_pages_lose_nothing(served):
     page, server, recording = served
     theirs = {"element": "room", "at": [2.0, 1.5], "name": "Theirs"}
     server.session.save({"survey": "office", "revision": "", "entries": [theirs]})
-    server.session._listener.join()
+    server.session.run.wait()
     page.run("edits.change('wall 3', {action: 'remove'})")
     press(page, "Save and make the plan anew", "#corrections")
     settle(page, "document.getElementById('told').textContent.includes('Another page')")

@@ -1,17 +1,23 @@
-"""The points of the chosen scans, or of all, as a LAZ file."""
+"""The points of the chosen scans, or of all, as a LAZ file and from above."""
 
 import laspy
 import numpy as np
 import pytest
+import shapely
+from PIL import Image
 
 from export_cloud import export_cloud
-from helpers import floorplan_making
+from helpers import e57_making, floorplan_making
+from scanplan.errors import StageError
 from scanplan.plan.corrections.georeference import format_reference
 from scanplan.plan.floorplan import GeoReference
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
 
 T_S = 1_700_000_000
+LEVELS = {"floor_z_m": "0.0", "ceiling_z_m": "2.5"}
+WHITE = (255, 255, 255)
+COLOURS = ((255, 0, 0), (0, 128, 0), (0, 0, 255))
 
 
 @pytest.fixture
@@ -37,11 +43,16 @@ def survey(tmp_path):
         **dict.fromkeys(worths, np.array([1.0, 2.0, 3.0])),
     }
     tables.write_table(selection, schemas.SELECTION, order)
-    return paths
+    free = tmp_path / "free.parquet"
+    floor = shapely.box(0, -1, 8, 2)
+    tables.write_table(free, schemas.FREE, floorplan_making.free([floor]), notes=LEVELS)
+    return [*paths, free]
 
 
-def exported(survey, path, free=None, **settings):
-    export_cloud(*survey, path, settings={"site": {}} | settings, free=free, n_scans=2)
+def exported(survey, path, *, recordings=(), **settings):
+    files = {"cloud": path, "picture": path.with_suffix(".png")}
+    settings = {"site": {}} | settings
+    export_cloud(*survey, files, settings=settings, recordings=recordings, n_scans=2)
     return laspy.read(path)
 
 
@@ -59,11 +70,53 @@ def test_all_scans_thinned(survey, tmp_path):
 
 
 def test_reference_points_of_the_plan_place_it(survey, tmp_path):
-    free = tmp_path / "free.parquet"
     reference = GeoReference("EPSG:25832", 500_000.0, 5_400_000.0, 0.0, 0.01)
     notes = {"georeference": format_reference(reference)}
-    tables.write_table(free, schemas.FREE, floorplan_making.free(), notes=notes)
     here = exported(survey, tmp_path / "here.laz", scans="all", cell_m=0.0)
-    placed = exported(survey, tmp_path / "placed.laz", scans="all", cell_m=0.0, free=free)
+    tables.write_table(survey[-1], schemas.FREE, floorplan_making.free(), notes=notes)
+    placed = exported(survey, tmp_path / "placed.laz", scans="all", cell_m=0.0)
     assert np.array(placed.x) == pytest.approx(np.array(here.x) + 500_000, abs=1e-3)
     assert np.array(placed.y) == pytest.approx(np.array(here.y) + 5_400_000, abs=1e-3)
+
+
+def test_from_above_points_are_dark_by_height_where_nothing_is_known_of_colours(survey, tmp_path):
+    exported(survey, tmp_path / "cloud.laz", scans="all", cell_m=0.0)
+    image = Image.open(tmp_path / "cloud.png")
+    # the floor that was seen, a metre around it, and 4 cm a pixel
+    assert image.size == (250, 125) and image.mode == "L"
+    assert image.getpixel((0, 0)) == WHITE[0]
+    # scan 2 at x = 2, y = 0: two metres up and three to the right of the lower left corner
+    assert image.getpixel((75, 124 - 50)) < image.getpixel((75, 124 - 75)) < WHITE[0]
+
+
+def stations(tmp_path, n_points=3):
+    """Write eight stations at the map's origin as many points as those of `survey`."""
+    points = np.array([(1, 0, 0), (1, 0, 0.01), (1, 1, 0)][:n_points], float)
+    poses = [np.eye(4) for _ in range(8)]
+    for number, pose in enumerate(poses):
+        pose[0, 3] = number - 1.0
+    colours = np.array(COLOURS[:n_points])
+    return [str(e57_making.write_e57(tmp_path / "a.e57", poses, [points] * 8, colours))]
+
+
+def test_colours_of_stations_are_read_from_their_files(survey, tmp_path):
+    cloud = exported(
+        survey, tmp_path / "cloud.laz", recordings=stations(tmp_path), scans="all", cell_m=0.0
+    )
+    rgb = np.column_stack([cloud.red, cloud.green, cloud.blue])
+    assert {tuple(row) for row in (rgb >> 8).tolist()} == set(COLOURS)
+    image = Image.open(tmp_path / "cloud.png")
+    assert image.getpixel((75, 124 - 50)) in COLOURS
+    assert image.getpixel((0, 0)) == WHITE
+
+
+def test_a_file_that_has_other_points_now_ends_in_a_line(survey, tmp_path):
+    with pytest.raises(StageError, match=r"scan 2: 3 points were registered.*has now 2"):
+        exported(
+            survey,
+            tmp_path / "cloud.laz",
+            recordings=stations(tmp_path, n_points=2),
+            scans="all",
+            cell_m=0.0,
+        )
+    assert not (tmp_path / "cloud.laz").exists() and not (tmp_path / "cloud.png").exists()

@@ -54,7 +54,7 @@ def test_a_door_opens_as_two_taps_say(page, tmp_path):
     press(page, "Opens so …", "#card")
     tap(page, (4.05, 1.0), (3.2, 1.02))
     (entry,) = entries(page)
-    assert entry["opens"] == pytest.approx([3.2, 1.02], abs=0.05)
+    assert entry["swing"] == pytest.approx([3.2, 1.02], abs=0.05)
     assert in_sight(page, "#edits .leaf") == 1 and "opens as shown" in text_of(page, "#fresh")
     assert carried_out(page, tmp_path).furniture["kind"].tolist() == ["furniture", "leaf"]
 

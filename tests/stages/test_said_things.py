@@ -30,15 +30,15 @@ def test_a_wall_ends_as_high_as_said(plan):
      ([3.2, 1.9], [3.15, 1.9], "SWING-RIGHT")],
 )  # fmt: skip
 def test_a_leaf_hangs_at_the_nearer_jamb_on_the_side_of_the_place(plan, opens, end, block):
-    found = corrected(plan, {"element": "opening", "at": [4.05, 1.45], "opens": opens})
-    (leaf_m,) = find_leaves(found.furniture)
+    found = corrected(plan, {"element": "opening", "at": [4.05, 1.45], "swing": opens})
+    (leaf_m,) = find_leaves(found.furniture).lines_m
     hinge = [4.05, opens[1]]
     assert sorted(np.round(leaf_m, 3).tolist()) == sorted([hinge, end])
     assert find_swings(found)[1].block == block
 
 
 def test_a_leaf_of_a_window_is_told(plan):
-    found = corrected(plan, {"element": "opening", "at": [1.6, -0.1], "opens": [1, 1]})
+    found = corrected(plan, {"element": "opening", "at": [1.6, -0.1], "swing": [1, 1]})
     (told,) = found.unmatched_corrections
     assert "opening 2 is a window" in told and len(found.furniture["kind"]) == 1
 

@@ -162,7 +162,7 @@ def test_a_leaf_that_was_turned_in_the_editor(results, direction, y, flip, side)
         assert entries == []
         return
     (entry,) = entries
-    assert entry["opens"] == pytest.approx([4.05 + side * 0.9, y], abs=0.001)
+    assert entry["swing"] == pytest.approx([4.05 + side * 0.9, y], abs=0.001)
     plan = run_again(results, with_files=True)
     assert find_swings(plan).keys() == {1}
     project = json.loads((results / "plan/plan.openplan3d.json").read_text())
@@ -333,7 +333,7 @@ def test_a_door_that_opens_otherwise_in_the_model(results, name):
     edit = lambda m: setattr(inner_wall(m)[1], "OperationType", "SINGLE_SWING_LEFT")  # noqa: E731
     taken(results, edited_ifc(results, edit, name))
     (entry,) = entries_of(results)
-    assert abs(entry["opens"][0] - 4.05) == pytest.approx(0.9, abs=0.03)
+    assert abs(entry["swing"][0] - 4.05) == pytest.approx(0.9, abs=0.03)
     assert find_swings(run_again(results)).keys() == {1}
 
 

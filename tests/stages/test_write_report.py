@@ -281,7 +281,7 @@ def test_a_click_says_what_was_clicked_beside_it_and_marks_its_row(page):
     click(page, place)
     rows = "[...document.querySelectorAll('tr.picked')].map(e => e.dataset.element)"
     assert page.run(rows) == ["wall 3"]
-    assert text_of(page, "#card h3") == "Wall 3" and "4.15" in text_of(page, "#card")
+    assert text_of(page, "#card h2") == "Wall 3" and "4.15" in text_of(page, "#card")
     left, top, right, bottom = page.run(
         "(r => [r.left, r.top, r.right, r.bottom])"
         "(document.getElementById('card').getBoundingClientRect())"

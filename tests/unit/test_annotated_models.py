@@ -9,7 +9,7 @@ from bcf.v2.bcfxml import BcfXml
 from helpers import ifc_making
 from scanplan.errors import StageError
 from scanplan.exports.changes.annotated_ifc import annotate_model
-from scanplan.exports.changes.model_facts import gather_changes
+from scanplan.exports.changes.model_facts import carry_ids, gather_changes
 from scanplan.exports.data.model_topics import Topic, format_topics
 
 NAME = "Scanplan_AsBuilt"
@@ -61,6 +61,39 @@ def test_topics_are_read_back_with_what_they_select(tmp_path):
         assert [component.ifc_guid for component in selected] == [guid]
         eye = view.visualization_info.orthogonal_camera.camera_view_point
         assert (eye.x, eye.y) == (3.0, 4.0) and eye.z > 2
+
+
+def test_what_was_there_before_keeps_its_id_in_the_copy(tmp_path):
+    columns = {
+        "element": np.array(["wall", "wall", "wall", "opening", "wall"], object),
+        "number_a": np.array([0, 0, 1, 5, 2]),
+        "number_b": np.array([7, 8, 8, -1, 9]),
+        "length_m": np.array([3.0, 1.0, 0.5, 0.9, 1.0]),
+        "area_m2": np.full(5, np.nan),
+    }
+
+    def ids(*rows):
+        kinds, numbers, names = zip(*rows, strict=True)
+        return {
+            "kind": np.array(kinds, object),
+            "number": np.array(numbers),
+            "global_id": np.array(names, object),
+        }
+
+    earlier = ids(("wall", 0, "A"), ("wall", 1, "B"), ("opening", 5, "D"), ("wall", 2, "N"))
+    later = ids(("wall", 7, "L"), ("wall", 8, "M"), ("wall", 9, "N"))
+    # the longer part of A keeps its id, the other has that of B; N bears its own already
+    assert carry_ids(columns, earlier, later) == {"L": "A", "M": "B"}
+    path = tmp_path / "made.ifc"
+    path.write_bytes(ifc_making.model())
+    before = ifcopenshell.open(path)
+    wall, other, *_ = (w.GlobalId for w in before.by_type("IfcWall"))
+    new = "0" * 21 + "1"
+    # ids may change places
+    text = annotate_model(path, NAME, {wall: {"id_in_plan": wall}}, {wall: other, other: new})
+    after = ifcopenshell.file.from_string(text)
+    stated = ifcopenshell.util.element.get_psets(after.by_guid(other))[NAME]
+    assert stated["IdInPlan"] == wall and after.by_guid(new).is_a("IfcWall")
 
 
 def test_a_model_of_the_later_survey_says_what_became_of_its_elements():

@@ -9,7 +9,10 @@ import changed_tests
 FILES = {
     "scripts/scanplan/geometry/lines.py": "",
     "scripts/scanplan/plan/walls.py": "from scanplan.geometry import lines\n",
-    "scripts/order_scans.py": "from scanplan.plan import walls\n",
+    "scripts/scanplan/plan/corners.py": "from scanplan.geometry.lines import Line\n",
+    "scripts/scanplan/plan/joints.py": "from scanplan.plan import corners\n",
+    "scripts/scanplan/plan/unused.py": "",
+    "scripts/order_scans.py": "from scanplan.plan import joints, walls\n",
     "tests/helpers/made.py": "from scanplan.geometry.lines import Line\n",
     "tests/unit/test_house.py": "",
     "tests/unit/test_lines.py": "from helpers import made\n",
@@ -34,6 +37,9 @@ def project(tmp_path):
     [
         ("scripts/scanplan/geometry/lines.py", ["unit/test_lines"]),
         ("scripts/scanplan/plan/walls.py", ["unit/test_walls"]),
+        # two imports away, and nowhere
+        ("scripts/scanplan/plan/corners.py", ["stages/test_order_scans"]),
+        ("scripts/scanplan/plan/unused.py", []),
         ("scripts/order_scans.py", ["stages/test_order_scans"]),
         ("scripts/thesis/stages/judge_claims.py", ["thesis/test_claims"]),
         ("tests/helpers/made.py", ["unit/test_lines"]),
@@ -69,3 +75,13 @@ def test_changes_are_those_since_main(project):
     (project / "scripts/scanplan/plan/walls.py").unlink()
     expected = ["scripts/order_scans.py", "tests/unit/test_new.py"]
     assert changed_tests.list_changed(project) == expected
+
+
+def test_what_all_tests_use_from_afar_is_left_to_the_whole_run(project, monkeypatch):
+    monkeypatch.setattr(changed_tests, "MOST_NEAREST", 0)
+    assert changed_tests.list_tests(["scripts/scanplan/plan/corners.py"], project) == [
+        "tests/unit/test_house.py"
+    ]
+    assert "tests/unit/test_walls.py" in changed_tests.list_tests(
+        ["scripts/scanplan/plan/walls.py"], project
+    )

@@ -25,11 +25,12 @@ from scanplan.changes import (
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.surveys import RaySight
-from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, SAME
+from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, OPENED, SAME, SHUT
 from scanplan.errors import StageError
 from scanplan.project.dataset import pair_surveys
 from scanplan.store import schemas, tables
 
+LEAF = (5, 3.0, 5, 3.9)
 MOVED_ROOM = PlaneMotion(np.radians(40), 3.0, 0.5)
 
 
@@ -180,8 +181,10 @@ def test_a_door_walled_up_behind_furniture_is_told_by_what_is_seen_beside_it():
     (walled,) = told(compare(survey(), survey(doors=[], pieces=[hiding])), "opening")
     assert (walled.verdict, walled.is_change) == (GONE, True)
     all_of_it = shapely.box(5.15, 2.2, 5.6, 4.5)
-    (doubtful,) = told(compare(survey(), survey(doors=[], pieces=[all_of_it])), "opening")
-    assert doubtful.verdict == GONE and not doubtful.is_change and "one side" in doubtful.doubt
+    changes = compare(survey(), survey(doors=[], pieces=[all_of_it]))
+    assert told(changes, "opening") == []
+    (closed,) = [c for c in changes if c.table == "opening"]
+    assert (closed.verdict, closed.is_told) == (SHUT, True) and "walled up, 0." in closed.doubt
 
 
 def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
@@ -189,12 +192,34 @@ def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
     walled = told(compare(a, survey(doors=[])), "opening")
     assert [(c.verdict, c.kind_a, c.number_b) for c in walled] == [(GONE, "door", -1)]
     assert walled[0].is_change
-    leaf = (5, 3.0, 5, 3.9)
-    b = survey(doors=[DOOR], hidden=[leaf])
+    b = survey(doors=[DOOR], hidden=[LEAF])
     empty = {name: values[:0] for name, values in b.plan.openings.items()}
     object.__setattr__(b.plan, "openings", empty)
     (door,) = [c for c in compare(a, b) if c.table == "opening"]
-    assert (door.verdict, door.number_b) == (SAME, -1) and "shut" in door.doubt
+    assert (door.verdict, door.number_b, door.doubt) == (SHUT, -1, "") and door.is_told
+    (door,) = [c for c in compare(b, a) if c.table == "opening"]
+    assert (door.verdict, door.number_a) == (OPENED, -1) and not door.is_change
+
+
+def test_an_opening_that_its_plan_doubts_is_not_told_as_shut():
+    a, b = survey(), survey(doors=[DOOR], hidden=[LEAF])
+    empty = {name: values[:0] for name, values in b.plan.openings.items()}
+    object.__setattr__(b.plan, "openings", empty)
+    for p_true, is_told in ((0.6, True), (np.nan, True), (0.1, False)):
+        a.plan.openings["p_true"] = np.array([p_true])
+        (door,) = opening_changes.compare_openings(a, b)
+        assert door.verdict == SHUT and door.is_told is is_told
+
+
+def test_a_door_that_both_have_is_told_shut_or_opened_and_its_wall_the_same():
+    a, b = survey(), survey(hidden=[LEAF])
+    for first, second, verdict in ((a, b, SHUT), (b, a, OPENED), (b, b, SAME)):
+        changes = compare(first, second)
+        (door,) = [c for c in changes if c.table == "opening"]
+        assert (door.verdict, door.number_a, door.number_b) == (verdict, 0, 0)
+        assert told(changes, "wall") == [] == told(changes, "room")
+    (line,) = [of for of in change_table.summarise_changes(compare(a, b)) if "opening" in of]
+    assert line == "opening: 1 shut"
 
 
 def test_a_door_broken_through_is_new_and_takes_nothing_of_its_wall():

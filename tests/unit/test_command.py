@@ -19,6 +19,7 @@ from scanplan.errors import StageError
 from scanplan.project.code_files import state_version
 from scanplan.project.run import command
 from scanplan.project.run.edit_server import EditServer
+from scanplan.project.run.served_run import ServedRun
 from scanplan.store import atomic
 
 MAIN = "import sys; from scanplan.project.run.command import main; sys.exit(main())"
@@ -123,6 +124,17 @@ def test_a_run_takes_the_place_of_the_command_and_says_which_it_is(tmp_path, pro
     assert second == f"{os.getpid()} {tmp_path} {' '.join(expected)}"
 
 
+# a run that says who it is and works on
+AT_WORK = """
+import json, os, sys, time
+stage = {"rule": "a", "name": str(os.getpid()), "dataset": "", "took_s": 0.0, "said": ""}
+told = {"wanted": {"a": 9}, "ended": [], "failed": [], "at_work": [stage]}
+with open(os.environ["SCANPLAN_STATUS"], "w") as file:
+    file.write(json.dumps(told))
+time.sleep(60)
+"""
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows ends a process without a signal")
 @pytest.mark.parametrize("sent", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
@@ -133,8 +145,7 @@ def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
     (results / "source.txt").write_text("my.bag\n")
     (tmp_path / "my.bag").touch()
     # a run that says who it is and works on
-    stub = "import os, time; print(f' 1/9 {os.getpid()}', flush=True); time.sleep(60)"
-    (modules / "snakemake.py").write_text(stub)
+    (modules / "snakemake.py").write_text(AT_WORK)
     places = [str(command.SNAKEFILE.parents[1] / "scripts"), str(modules)]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(places), "TMPDIR": str(scratch)}
     # what runs the tests may ignore Ctrl-C, and what it begins inherits that
@@ -151,11 +162,12 @@ def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
         headers = {"Origin": origin, "Content-Type": "application/json"}
         request = urllib.request.Request(f"{page}api/corrections", asked, headers)
         urllib.request.urlopen(request, timeout=20).close()
-        told = {"ended": 0, "running": True}
-        while told["running"] and not told["ended"]:
+        told = {"total": 0, "running": True}
+        while told["running"] and not told["total"]:
             time.sleep(0.02)
             told = json.load(urllib.request.urlopen(f"{page}api/run", timeout=20))
-        assert len(list(scratch.iterdir())) == 1
+        # its settings, and what it tells of its stages
+        assert len(list(scratch.iterdir())) == 2
         opened.send_signal(getattr(signal, sent))
         assert opened.wait(timeout=20) == 0
     assert list(scratch.iterdir()) == [] and not atomic.is_process_alive(int(told["line"]))
@@ -181,3 +193,34 @@ def test_a_report_is_opened_at_an_address_of_this_computer_alone(tmp_path, monke
     said = capsys.readouterr().out
     assert address in said and f"{tmp_path}/my.bag.corrections.yaml" in said
     assert "no browser could be started; open the address" in said
+
+
+def test_a_recording_is_opened_while_its_run_makes_the_plan(tmp_path, monkeypatch, capsys):
+    begun = []
+    for module in (interrupts, surroundings):
+        for name in ("begin_work", "interrupt_on_end", "mend_surroundings", "end_on_interrupt"):
+            if hasattr(module, name):
+                monkeypatch.setattr(module, name, lambda: None)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(os, "environ", dict(os.environ))
+    monkeypatch.setattr(EditServer, "serve_forever", lambda _: None)
+    monkeypatch.setattr(ServedRun, "begin", lambda _, asked: begun.append(asked))
+    assert command.main(["a/my.bag", "--open", "--no-browser", "--cores", "3"]) == 0
+    (asked,) = begun
+    assert asked[: len(command._SNAKEMAKE)] == [*command._SNAKEMAKE]
+    parsed = get_argument_parser().parse_args(asked[len(command._SNAKEMAKE) :])
+    assert (parsed.config, parsed.cores) == (['dataset=["a/my.bag"]'], 3)
+    address, runs = capsys.readouterr().out.splitlines()
+    assert address.endswith("/report.html") and runs.startswith("scanplan: runs snakemake ")
+
+
+def test_the_results_of_what_is_opened_bear_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert str(command.find_results(["demo"])) == "results/demo"
+    assert str(command.find_results(["a/ground floor"])) == "results/ground_floor"
+
+
+@pytest.mark.parametrize("given", [["a.bag", "b.bag"], ["diff"], ["floors.tsv"]])
+def test_one_floor_is_opened_at_a_time(given):
+    with pytest.raises(StageError, match="--open shows one floor; name one recording"):
+        command.find_results(given)

@@ -59,7 +59,7 @@ corrections:
 def test_leaves_things_tapes_and_settled_rooms_are_read(tmp_path):
     text = """\
 corrections:
-- {element: opening, at: [3, 0], kind: door, opens: [2.5, 0.9]}
+- {element: opening, at: [3, 0], kind: door, swing: [2.5, 0.9]}
 - {element: furniture, action: add, outline: [[0, 0], [2, 0], [2, 1], [0, 1]], kind: column}
 - {element: furniture, at: [5, 5], action: remove}
 - {element: length, action: add, line: [[0, 0], [4, 0]], length_m: 4.012, sigma_m: 0.002}
@@ -68,7 +68,7 @@ corrections:
 - {element: wall, at: [9, 9], height_m: 1.2}
 """
     door, column, gone, tape, room, settled, wall = read_corrections(written(tmp_path, text))
-    assert door.opens_m == (2.5, 0.9) and column.at_m == (1.0, 0.5)
+    assert door.swing_m == (2.5, 0.9) and column.at_m == (1.0, 0.5)
     assert column.outline_m == ((0, 0), (2, 0), (2, 1), (0, 1)) and gone.action == "remove"
     assert (tape.length_m, tape.sigma_m, tape.at_m) == (4.012, 0.002, (2, 0))
     assert (room.use, room.by, room.when) == ("store", "A. Bee", "2026-03-01T09:30:00Z")

@@ -5,8 +5,8 @@ import os
 import pytest
 
 from scanplan.errors import StageError
-from scanplan.project.dataset import name_datasets
-from scanplan.project.dataset_list import is_list, read_list
+from scanplan.project.dataset import list_floors, name_datasets
+from scanplan.project.dataset_list import is_list, read_floors, read_list
 
 
 def write(tmp_path, text):
@@ -24,6 +24,18 @@ def test_a_list_stands_among_other_datasets(tmp_path):
     file = write(tmp_path, "path\none\ntwo\n")
     assert name_datasets(["zero", file]) == {"zero": "zero", "one": "one", "two": "two"}
     assert name_datasets(file) == {"one": "one", "two": "two"}
+
+
+def test_surveys_of_one_floor_are_together_in_the_order_of_the_file(tmp_path):
+    file = write(tmp_path, "path\tfloor\nmay\tground\nhall\t\njune\t ground \n")
+    assert read_floors(file) == {"may": "ground", "hall": "hall", "june": "ground"}
+    assert list_floors(file) == {"ground": ["may", "june"], "hall": ["hall"]}
+    # what no list states is a floor of its own
+    assert list_floors(["attic", file]) == {
+        **{"attic": ["attic"], "ground": ["may", "june"]},
+        "hall": ["hall"],
+    }
+    assert list_floors(None) == {"demo": ["demo"]}
 
 
 def test_a_folder_is_no_list(tmp_path):
@@ -50,6 +62,8 @@ def test_a_byte_order_mark_is_no_part_of_a_name(tmp_path):
         ("name\tpath\nthesis\ta\n", "a: thesis is a target .*; choose another name"),
         ("name\tpath\nThesis\ta\n", "a: Thesis is a target"),
         ("name\tpath\nsummary.html\ta\n", "a: summary.html is a target"),
+        ("name\tpath\nfloors.csv\ta\n", "a: floors.csv is a target"),
+        ("path\tfloor\tfloor\na\tb\tc\n", "names the column floor 2 times; keep one"),
         ("path\nfloors/all\n", "floors/all: all is a target"),
         ("path\tpath\na\tb\n", "names the column path 2 times; keep one"),
         ("name\tpath\tname\nx\ta\ty\n", "names the column name 2 times; keep one"),

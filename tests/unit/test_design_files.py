@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from scanplan.errors import StageError
-from scanplan.project.dataset import Dataset, list_deviations
+from scanplan.project.dataset import Dataset, list_deviations, list_replaced_models
 from scanplan.project.design_file import choose_design, find_designs
 from scanplan.project.tolerance_file import TABLES, read_tolerances
 
@@ -44,6 +44,13 @@ def test_a_model_is_annotated_and_a_drawing_is_not():
     assert not [file for file in files("x.dxf") if file.endswith((".ifc", ".bcf"))]
     with pytest.raises(StageError, match=r"a has none.*plan\.design\.file"):
         files()
+
+
+@pytest.mark.parametrize(("design", "n_left"), [("x.IFC", 0), ("x.dxf", 2)])
+def test_models_of_an_earlier_design_are_named_where_there_is_none_now(design, n_left):
+    found = Dataset("a", {}, (), designs=(design,))
+    left = list_replaced_models(found)
+    assert len(left) == n_left and not set(left) & set(list_deviations(found))
 
 
 def test_our_table_is_that_of_the_standard():

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from helpers import floorplan_making
-from scanplan.exports.drafting.leaves import draw_swing, find_leaves
+from scanplan.exports.drafting.leaves import Leaves, draw_swing, find_leaves
 from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.symbols import symbol_paths
 
@@ -14,7 +14,7 @@ DOOR = Symbol("door", np.array([[1.0, 0.0], [2.0, 0.0]]), 0.2, "door-0", "")
 
 
 def leaf(x, y, to_x, to_y):
-    return np.array([[[x, y], [to_x, to_y]]], float)
+    return Leaves(np.array([[[x, y], [to_x, to_y]]], float), np.zeros(1, bool))
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ def test_a_wide_door_has_two_leaves():
         leaf(1, 0, 1.9, 0.0),  # shut
         leaf(1.5, 0.1, 1.5, 1.0),  # at no jamb
         leaf(1, 0, 1, 0.4),  # too short
-        np.empty((0, 2, 2)),
+        Leaves(np.empty((0, 2, 2)), np.empty(0, bool)),
     ],
 )
 def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
@@ -63,6 +63,6 @@ def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
 def test_leaves_are_middle_lines_of_their_outlines():
     outline = shapely.box(0, 0, 0.04, 0.9)
     furniture = floorplan_making.furniture([outline], "leaf")
-    ends_m = find_leaves(furniture)[0]
+    ends_m = find_leaves(furniture).lines_m[0]
     np.testing.assert_allclose(sorted(ends_m.tolist()), [[0.02, 0.0], [0.02, 0.9]])
-    assert find_leaves(floorplan_making.furniture()).shape == (0, 2, 2)
+    assert find_leaves(floorplan_making.furniture()).lines_m.shape == (0, 2, 2)

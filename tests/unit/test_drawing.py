@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+import shapely
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -179,3 +180,37 @@ def test_a_matplotlibrc_of_the_user_changes_nothing(tmp_path, project_root):
         "axes.facecolor: red\npdf.compression: 0\nsvg.fonttype: none\ntext.hinting: native\n"
     )
     assert len(ours.split()) == 4 and run().stdout == ours
+
+
+def test_a_sheet_no_larger_than_a3_is_one_page_of_its_own_size():
+    (page,) = drawing.draw_tiles(composition.compose_sheet(plan()))
+    assert page.get_size_inches() == pytest.approx(np.array([297, 210]) / 25.4)
+
+
+@pytest.mark.parametrize(
+    ("size_mm", "page_mm", "n_pages"),
+    # pages show 410 x 287 mm and overlap by 5; the frame is 565 x 401 mm, and 812 x 575 mm
+    [((594.0, 420.0), (297, 420), 2), ((841.0, 594.0), (420, 297), 6)],
+)
+def test_a_large_sheet_goes_on_pages_of_a3_that_show_all_of_it_to_scale(size_mm, page_mm, n_pages):
+    sheet = composition.compose_sheet(plan())
+    large = replace(sheet, page=replace(sheet.page, name="large", size_mm=size_mm))
+    tiles = drawing.draw_tiles(large)
+    assert len(tiles) == n_pages
+    windows_mm = []
+    for tile in tiles:
+        assert tile.get_size_inches() == pytest.approx(np.array(page_mm) / 25.4)
+        (axes,) = tile.axes
+        (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
+        shown = axes.get_position().size * tile.get_size_inches() * 25.4
+        # a millimetre of the sheet is one of the page
+        np.testing.assert_allclose([x1 - x0, y1 - y0], shown)
+        windows_mm.append(shapely.box(x0, y0, x1, y1))
+    assert shapely.union_all(windows_mm).buffer(1e-6).covers(shapely.box(*large.page.inner_mm))
+    beside = windows_mm[0].intersection(windows_mm[1])
+    assert beside.bounds[2] - beside.bounds[0] >= 5
+    # row by row from the upper left
+    assert windows_mm[0].bounds[0] == pytest.approx(19.5)
+    assert windows_mm[0].bounds[3] >= size_mm[1] - 10
+    drawn = {patch.get_gid() for tile in tiles for patch in tile.axes[0].patches}
+    assert {patch.get_gid() for patch in drawing.draw_sheet(large).axes[0].patches} == drawn

@@ -4,6 +4,7 @@ import contextlib
 import http.client
 import json
 import os
+import subprocess
 import sys
 import tempfile
 import threading
@@ -13,6 +14,7 @@ import pytest
 
 from scanplan.errors import StageError
 from scanplan.project.corrections_file import read_corrections
+from scanplan.project.run import growing
 from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
 from scanplan.report import result_links
@@ -20,7 +22,19 @@ from scanplan.report import result_links
 SURVEY = "floor 0123"
 WALL = {"element": "wall", "at": [1.0, 2.0], "action": "remove"}
 ROOM = {"element": "room", "at": [3.0, 2.0], "name": "Küche </script> \u2028"}
-RUN = "import sys, json; print(' 1/2 floor correct_plan:  0.1 s  1 of 1'); print(sys.argv[1:])"
+# what a run tells of its stages
+STATUS = {
+    "wanted": {"correct_plan": 1, "write_report": 1},
+    "ended": [
+        {"rule": "correct_plan", "name": "correct_plan", "dataset": "floor", "took_s": 1.0,
+         "said": "1 of 1"},
+    ],
+    "at_work": [],
+    "failed": [],
+}  # fmt: skip
+TELL = f"import json, os; open(os.environ['SCANPLAN_STATUS'], 'w').write(json.dumps({STATUS}))"
+RUN = f"{TELL}; import sys; print(sys.argv[1:])"
+SLOW = f"{TELL}; import time; time.sleep(60)"
 FAILED = "import sys; print('scanplan: correct_plan: entry 1: fault; remedy'); sys.exit(1)"
 DATA = {"made": "abc", "survey": SURVEY, "corrections": [{"name": '"made": "no"'}]}
 
@@ -153,8 +167,9 @@ def test_what_is_saved_is_a_file_beside_the_recording_and_begins_a_run(server, f
     assert (wall.action, wall.at_m) == ("remove", (1.0, 2.0))
     # two characters that end a line elsewhere are refused
     assert room.name == ROOM["name"].strip()
+    # what a run told of its stages is gone with it, where it has ended well
     said = wait(server)
-    assert (said["ended"], said["total"], "error" in said) == (1, 2, False)
+    assert (said["ended"], said["total"], "error" in said) == (0, 0, False)
 
 
 def test_a_hostile_name_is_refused_and_nothing_is_written(server, folder):
@@ -169,7 +184,7 @@ def test_the_run_gets_the_dataset_and_the_settings_that_made_the_results(folder)
     with serving(folder, run) as server:
         save(server, WALL)
         wait(server)
-        told = "\n".join(server.session._lines)
+        told = "\n".join(server.session.run.lines)
     assert "'--configfile'" in told and "min_scans: 3" in told
     assert """'--config', 'dataset=["rec"]'""" in told
 
@@ -180,7 +195,7 @@ def test_storeys_of_a_building_are_made_together(folder):
     with serving(folder) as server:
         save(server, WALL)
         wait(server)
-        assert server.session._lines[-1] == """['--config', 'dataset=["cellar", "rec"]']"""
+        assert server.session.run.lines[-1] == """['--config', 'dataset=["cellar", "rec"]']"""
 
 
 def test_a_run_that_fails_is_told_in_one_line(folder):
@@ -190,10 +205,162 @@ def test_a_run_that_fails_is_told_in_one_line(folder):
 
 
 def test_while_a_run_is_at_work_nothing_is_saved(folder):
-    with serving(folder, "import time; time.sleep(60)") as server:
+    with serving(folder, SLOW) as server:
         save(server, WALL)
         status, said = save(server, ROOM)
         assert status == 400 and "a run is at work" in said["error"]
+
+
+def test_a_run_is_told_stopped_and_resumed(folder):
+    with serving(folder, SLOW) as server:
+        save(server, WALL)
+        said = settle(server, lambda said: said["total"])
+        assert said["running"] and said["name"] == "floor" and said["made"]
+        assert [(s["name"], s["state"]) for s in said["stages"]] == [
+            ("correct_plan", "done"), ("write_report", "to come"),
+        ]  # fmt: skip
+        assert ask(server, "api/go", {}) == (400, {"error": "a run is at work already"})
+        assert ask(server, "api/stop", {})[0] == 200
+        said = ask(server, "api/run")[1]
+        assert (said["running"], said["stopped"], "error" in said) == (False, True, False)
+        assert ask(server, "api/go", {})[0] == 200
+        assert settle(server, lambda said: said["running"])["stopped"] is False
+
+
+def test_what_was_not_stopped_is_not_resumed(server):
+    status, said = ask(server, "api/go", {})
+    assert status == 400 and said["error"].startswith("no run was stopped")
+
+
+def settle(server, is_so):
+    for _ in range(400):
+        status, said = ask(server, "api/run")
+        assert status == 200
+        if is_so(said):
+            return said
+        time.sleep(0.02)
+    raise AssertionError(said)
+
+
+@pytest.fixture
+def begun(folder):
+    """A server of results that a run makes first: it waits for a file, then writes the report."""
+    page = (folder / "report.html").read_text()
+    (folder / "report.html").unlink()
+    there = folder / "there.txt"
+    make = (
+        f"import pathlib, time\nwhile not pathlib.Path({str(there)!r}).exists(): time.sleep(0.01)\n"
+        f"pathlib.Path({str(folder / 'report.html')!r}).write_text({page!r})"
+    )
+    session = EditSession(folder, [], [sys.executable, "-c", f"{TELL}\n{make}"])
+    with EditServer(session) as server:
+        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+        thread.start()
+        session.go_on()
+        try:
+            yield server, there
+        finally:
+            server.shutdown()
+            thread.join()
+            session.end()
+
+
+def test_until_there_is_a_report_its_place_tells_of_the_run(begun, folder):
+    server, there = begun
+    assert b"A plan is being made" in ask(server, "report.html")[1]
+    assert not settle(server, lambda said: said["total"])["made"]
+    # a plan that others look at is one that was made before
+    assert ask(server, "api/state")[0] == 400
+    there.touch()
+    assert settle(server, lambda said: not said["running"])["made"]
+    assert ask(server, "report.html")[1] == (folder / "report.html").read_bytes()
+    assert ask(server, "api/state")[1]["page"] == "abc"
+
+
+def test_the_report_of_an_earlier_run_is_not_shown_while_one_makes_it_anew(begun, folder):
+    server, there = begun
+    (folder / "report.html").write_text("old")
+    assert b"A plan is being made" in ask(server, "report.html")[1]
+    there.touch()
+    settle(server, lambda said: not said["running"])
+    assert ask(server, "report.html")[1] != b"old"
+
+
+def test_a_first_run_that_is_stopped_goes_on(begun):
+    server, there = begun
+    ask(server, "api/stop", {})
+    assert b"A plan is being made" in ask(server, "report.html")[1]
+    assert ask(server, "api/go", {})[0] == 200
+    there.touch()
+    assert settle(server, lambda said: not said["running"])["made"]
+
+
+def test_points_and_pictures_are_made_by_processes_of_their_own(server, folder, monkeypatch):
+    monkeypatch.setattr(growing, "_begin", lambda module, results: echo(f"{module} {results}"))
+    assert ask(server, "api/points") == (200, f"{growing.POINTS} {folder}".encode())
+    (folder / "poses.parquet").rename(folder / "other.parquet")
+    # nothing is there to be drawn
+    assert ask(server, "api/drawn") == (200, {})
+    (folder / "plan/walls.parquet").touch()
+    monkeypatch.setattr(growing, "_begin", lambda *_: echo(json.dumps({"svg": "<svg/>"})))
+    assert ask(server, "api/drawn") == (200, {"svg": "<svg/>"})
+
+
+def test_what_cannot_be_drawn_is_told_in_one_line(server, folder, monkeypatch):
+    (folder / "plan/walls.parquet").touch()
+    broken = "import sys; sys.exit('more\\nwalls.parquet: is damaged')"
+    monkeypatch.setattr(growing, "_begin", lambda *_: begin(broken))
+    for place in ("api/points", "api/drawn"):
+        told = {"error": "it cannot be drawn: walls.parquet: is damaged"}
+        assert ask(server, place) == (400, told)
+
+
+def test_a_picture_that_takes_too_long_is_given_up(server, folder, monkeypatch):
+    (folder / "plan/walls.parquet").touch()
+    monkeypatch.setattr(growing, "_PATIENCE_S", 0.1)
+    monkeypatch.setattr(growing, "_begin", lambda *_: begin("import time; time.sleep(60)"))
+    status, said = ask(server, "api/drawn")
+    assert status == 400 and "takes more than" in said["error"]
+
+
+def begin(code):
+    return subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def echo(text):
+    return begin(f"import sys; sys.stdout.write({text!r})")
+
+
+@pytest.mark.parametrize("place", ["api/run", "api/drawn", "api/points", "api/state"])
+def test_what_is_told_is_told_to_our_own_page_alone(server, place):
+    assert ask(server, place, token="x" * 32)[0] == 403
+    assert ask(server, place, Host=f"evil.example:{server.server_port}")[0] == 403
+    assert ask(server, place, Origin="http://evil.example")[0] == 403
+    assert ask(server, f"{place}/..")[0] == 404
+
+
+@pytest.mark.parametrize("place", ["api/stop", "api/go"])
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({"Origin": "http://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Origin": None}, 403),
+        ({"Host": "evil.example"}, 403),
+        ({"Content_Type": "text/plain"}, 415),
+        ({"Content_Type": "application/x-www-form-urlencoded"}, 415),
+    ],
+)
+def test_a_page_of_another_site_neither_stops_nor_begins_a_run(folder, place, headers, status):
+    with serving(folder, SLOW) as server:
+        save(server, WALL)
+        assert ask(server, place, {}, **headers)[0] == status
+        assert ask(server, place, {}, token="x" * 32)[0] == 403
+        assert ask(server, place)[0] == 404  # a GET does nothing
+        assert ask(server, place, b"[]")[0] == 400
+        assert ask(server, "api/run")[1]["running"]
 
 
 def test_what_another_page_saved_meanwhile_is_not_overwritten(server, folder):
@@ -387,7 +554,7 @@ def test_a_lone_recording_has_its_corrections_and_their_log_beside_it(folder):
     recording = folder.parents[1] / "rec/my.bag"
     recording.touch()
     with serving(folder) as server:
-        assert server.session.place == recording.with_name("my.bag.corrections.yaml")
+        assert server.session.find_place() == recording.with_name("my.bag.corrections.yaml")
         save(server, WALL)
     # another recording in the folder has a log of its own
     found = sorted(path.name for path in recording.parent.iterdir())
@@ -423,7 +590,7 @@ def test_a_run_that_cannot_begin_is_told_and_leaves_no_settings(folder, tmp_path
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
     session = EditSession(folder, [str(tmp_path / "no_program")])
-    with pytest.raises(StageError, match="corrections are saved, but no run begins"):
+    with pytest.raises(StageError, match="what was said is saved, but no run begins"):
         session.save({"survey": SURVEY, "revision": "", "entries": [WALL]})
     assert list(scratch.iterdir()) == [] and not session.state()["running"]
     assert session.state()["entries"] == [WALL]
@@ -432,7 +599,7 @@ def test_a_run_that_cannot_begin_is_told_and_leaves_no_settings(folder, tmp_path
 def test_a_simulated_one_has_them_beside_its_recording_in_the_results(folder):
     (folder / "source.txt").write_text("the simulated demo\n")
     (folder / "survey").mkdir()
-    assert EditSession(folder, []).place == folder / "survey/corrections.yaml"
+    assert EditSession(folder, []).find_place() == folder / "survey/corrections.yaml"
 
 
 @pytest.mark.parametrize(

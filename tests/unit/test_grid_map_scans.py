@@ -8,7 +8,7 @@ from PIL import Image
 
 from helpers import refusals
 from scanplan.project import dataset_files
-from scanplan.recordings import frame_edges
+from scanplan.recordings import frame_edges, grid_map_scans
 from scanplan.recordings.motion import pose_kind
 from scanplan.recordings.survey import open_survey
 
@@ -65,6 +65,14 @@ def test_places_lie_in_the_open_and_see_the_middles_of_occupied_cells(tmp_path):
         assert 360 < len(xyz_m) < 720 and (x_m > -0.55).all()
 
 
+def test_on_much_floor_places_are_farther_apart(tmp_path, monkeypatch):
+    all_places, _ = read(write(tmp_path))
+    monkeypatch.setattr(grid_map_scans, "_MOST_PLACES", 4)
+    places, _ = read(tmp_path)
+    assert 3 <= len(places) < len(all_places)
+    assert (places >= (-0.28, 2.72)).all() and (places <= (2.28, 4.28)).all()
+
+
 def test_other_images_and_negated_ones_are_the_same_map(tmp_path):
     _, seen = read(write(tmp_path / "a"))
     text = YAML.replace("room.pgm", "'room.png'  # of slam_toolbox")
@@ -87,6 +95,9 @@ refusal = partial(refusals.refusal, read)
         ("0.05", "0", "resolution 0 m"),
         ("-1.0, 2.0, 0", "-1.0, 2.0, 0.5", "yaw 0.5"),
         ("-1.0, 2.0, 0", "-1.0, 2.0", "map_server"),
+        ("-1.0, 2.0, 0", ".nan, 2.0, 0", "origin nan"),
+        ("-1.0, 2.0, 0", "-1.0, 9000, 0", "origin -1, 9000"),
+        ("negate: 0", "negate: .inf", "map_server"),
         ("room.pgm", "hall.pgm", "hall.pgm"),
         ("negate: 0", "negate: 1", "0 places"),
     ],

@@ -6,7 +6,7 @@ import pytest
 from helpers import refusals
 from helpers.las_making import write_las, write_trajectory
 from scanplan.project import dataset_files
-from scanplan.recordings import frame_edges, las_drive
+from scanplan.recordings import frame_edges, las_drive, trajectory_file
 from scanplan.recordings.survey import open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
@@ -155,11 +155,18 @@ def test_points_without_time_end_in_a_line(tmp_path):
         ("1000 0 0 0\n1001 0 nought 0\n", "line 2"),
         ("1000 0 0 0\n1001 0\n", "line 2"),
         ("nan 0 0 0\n1001 nan 0 0\n", "0 times"),
+        ("1000 0 0 0\n1001 1e9 0 0\n", "1e+09 m"),
+        (f"1000 0 0 0\n1001 0 0 0{' 0' * 40_000}\n", "more than 65536 bytes"),
     ],
 )
 def test_a_trajectory_that_is_none_ends_in_a_line(tmp_path, text, named):
     (drive(tmp_path) / "trajectory.txt").write_text(text)
     assert named in refusal(tmp_path)
+
+
+def test_a_trajectory_of_too_many_places_ends_in_a_line(tmp_path, monkeypatch):
+    monkeypatch.setattr(trajectory_file, "_MOST_PLACES", len(AT_S) - 1)
+    assert "more than 4 places" in refusal(drive(tmp_path))
 
 
 def test_two_trajectories_end_in_a_line(tmp_path):

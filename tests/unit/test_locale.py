@@ -10,9 +10,13 @@ from scanplan.errors import StageError
 from scanplan.exports import dxf
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import compose_sheet, paper_words
+from scanplan.exports.sheet.lettering import measure_width_mm
 from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
-from scanplan.exports.sheet.styles import LAYERS
+from scanplan.exports.sheet.marks import Word
+from scanplan.exports.sheet.paper import Slot
+from scanplan.exports.sheet.styles import LAYERS, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.project.words_file import read_layers, read_words
 
@@ -200,3 +204,25 @@ def test_a_file_that_is_not_there_is_told(read):
 def test_a_language_or_layers_that_are_not_ours_are_refused_with_the_key_and_what_is(read, said):
     with pytest.raises(StageError, match=said):
         read("it")
+
+
+@pytest.mark.parametrize("unit", ["m", "mm", "ft"])
+def test_sizes_of_rooms_stand_in_columns_of_their_own(unit):
+    locale = Locale(unit)
+    for sheet in sheets(locale):
+        slot = Slot(0.0, 100.0, len(sheet.stamps))
+        items = [*title.draw_room_table(sheet.stamps, [slot], locale)]
+        words = [item for item in items if isinstance(item, Word)]
+        # the heads, and a row for each of the two rooms
+        assert len(words) == 3 * 5
+        for row in range(3):
+            begins, ends = zip(*(_reach(word) for word in words[5 * row :][:5]), strict=True)
+            assert all(end < begin for end, begin in zip(ends, begins[1:], strict=False))
+            assert ends[-1] < Paper.COLUMN
+
+
+def _reach(word):
+    """From where to where a word reaches, millimetres."""
+    wide = measure_width_mm(word.text, word.size_mm)
+    begin = float(word.place[0]) - word.align * wide
+    return begin, begin + wide

@@ -130,6 +130,18 @@ def test_points_that_are_no_places_and_strays_are_left_out_and_counted(tmp_path,
     np.testing.assert_allclose(spoilt, places)
 
 
+def test_a_stray_far_above_takes_no_memory(tmp_path, monkeypatch):
+    from scipy import ndimage
+
+    sizes = []
+    transform = ndimage.distance_transform_cdt
+    monkeypatch.setattr(
+        ndimage, "distance_transform_cdt", lambda *a: sizes.append(a[0].size) or transform(*a)
+    )
+    places, _, _ = read(write(tmp_path, np.concatenate([ROOM, [(1.0, 1.0, 14_000.0)]])))
+    assert len(places) >= 3 and max(sizes) < 10_000
+
+
 def test_little_memory_makes_cubes_larger(tmp_path, monkeypatch, caplog):
     path = write(tmp_path, ROOM)
     monkeypatch.setattr(merged_cloud, "_MOST_CUBES", 30_000)

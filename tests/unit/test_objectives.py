@@ -6,9 +6,11 @@ from hypothesis import strategies as st
 from shapely import box
 
 from reference import greedy_coverage as literal
+from scanplan.errors import StageError
 from scanplan.geometry.tolerances import ROUNDING, SMALLEST_M2
-from scanplan.selection import bounds
+from scanplan.selection import bounds, objectives
 from scanplan.selection.objectives import CellCoverage, PolygonArea
+from scanplan.selection.survey_scans import SurveyScans
 
 # weights of eighths add up without rounding: ties are ties
 SCANS = st.lists(
@@ -166,3 +168,10 @@ def test_an_overlap_keeps_the_choice_beside_what_is_chosen():
 def test_invalid_polygons_are_repaired():
     bow = shapely.Polygon([(0, 0), (2, 2), (2, 0), (0, 2)])
     assert PolygonArea([bow, box(0, 0, 2, 2)]).greedy(0.1).covered.tolist() == pytest.approx([4, 4])
+
+
+def test_wall_of_scans_that_are_not_there_is_refused():
+    columns = {"scan_id": np.array([1, 7]), "length_m": np.ones(2)}
+    scans = SurveyScans(np.array([1, 2]), {"observations": columns})
+    with pytest.raises(StageError, match="run again"):
+        objectives.cover_wall_length(scans)

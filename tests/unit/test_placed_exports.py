@@ -113,7 +113,7 @@ def test_the_glb_lies_there_and_its_floor_at_its_height(ids):
 def test_the_cloud_lies_there(tmp_path):
     path = tmp_path / "cloud.laz"
     point = np.array([[*CORNER_M, 1.5]], np.float32)
-    point_cloud.write_laz(path, [(7, point)], 0.0, 10**18, SITE)
+    point_cloud.write_laz(path, [(7, point, None)], 0.0, 10**18, SITE)
     cloud = laspy.read(path)
     assert holds(np.column_stack([cloud.x, cloud.y]), 1e-3)
     assert np.array(cloud.z) == pytest.approx([246.5]) and np.array(cloud["scan_id"]) == [7]

@@ -60,7 +60,10 @@ def test_an_end_is_a_part_last_and_where_it_is_known_less():
     assert (part.element, part.is_part) == ("wall 1", True)
     # the toy's second ends are known less
     np.testing.assert_allclose(part.place_m, [walls["x1_m"][1], walls["y1_m"][1]])
-    assert [doubt.element for doubt in doubts.list_to_verify(made)] == ["opening 2"]
+    by_kind = doubts.group_by_kind(made)
+    counted = {kind: [doubt.element for doubt in of] for kind, of in by_kind.items()}
+    assert counted == {"opening": ["opening 2"], "end": ["wall 1"]}
+    assert len(doubts.list_doubts(made)) == sum(map(len, by_kind.values()))
     ((row, end_m),) = doubts.list_loose_ends(made)
     assert row == 1
     np.testing.assert_allclose(end_m, part.place_m)

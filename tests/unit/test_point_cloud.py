@@ -14,8 +14,9 @@ SCANS = [
 ]
 
 
-def written(path, cell_m, scans=SCANS):
-    counts = point_cloud.write_laz(path, scans, cell_m, 10**18)
+def written(path, cell_m, rgb_of=lambda scan_id: None, **choices):
+    scans = [(scan_id, xyz_m, rgb_of(scan_id)) for scan_id, xyz_m in SCANS]
+    counts = point_cloud.write_laz(path, scans, cell_m, 10**18, **choices)
     return laspy.read(path), counts
 
 
@@ -32,6 +33,19 @@ def test_the_first_point_of_each_cube_stays(tmp_path):
     cloud, counts = written(tmp_path / "cloud.laz", 0.05)
     assert counts == (5, 3)
     assert list(cloud.x) == [0.01, 1.0, 5.0] and cloud["scan_id"].tolist() == [3, 3, 8]
+
+
+def test_points_keep_their_colours_and_are_black_without(tmp_path):
+    rgb_of = {3: None, 8: np.array([(1, 2, 3), (4, 5, 65535)], np.uint16)}.get
+    cloud, _ = written(tmp_path / "cloud.laz", 0.05, rgb_of, coloured=True)
+    assert list(cloud.x) == [0.01, 1.0, 5.0]
+    assert np.column_stack([cloud.red, cloud.green, cloud.blue]).tolist() == [
+        [0, 0, 0],
+        [0, 0, 0],
+        [4, 5, 65535],
+    ]
+    plain, _ = written(tmp_path / "plain.laz", 0.05, rgb_of)
+    assert "red" not in plain.point_format.dimension_names
 
 
 def test_the_same_points_give_the_same_bytes(tmp_path):

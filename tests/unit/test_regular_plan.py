@@ -127,6 +127,13 @@ def test_thickness_is_nominal_where_it_is_near():
     assert (drafted.n_nominal, drafted.thickness_m) == (3, pytest.approx(0.012))
 
 
+def test_a_size_at_the_very_limit_is_taken_and_one_beyond_is_not():
+    sizes_m, sigma_m = (0.1,), np.full(2, 0.005)
+    measured_m, allowed_m = np.array([0.12, 0.121]), np.full(2, 0.02)
+    chosen_m = choose_sizes(measured_m, sigma_m, allowed_m, sizes_m, np.ones(2))
+    np.testing.assert_array_equal(chosen_m, [0.1, np.nan])
+
+
 def test_of_two_sizes_that_may_be_that_is_taken_which_the_building_has():
     measured_m = np.array([0.1, 0.1, 0.1, 0.1075])
     near_m = np.full(4, 0.02)

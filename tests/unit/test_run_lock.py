@@ -1,9 +1,11 @@
 """One run at a time in a folder, and a note of the signals that reach it."""
 
+import contextlib
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -130,3 +132,54 @@ def test_a_folder_that_cannot_be_locked_is_left_unlocked(monkeypatch):
     monkeypatch.setattr("fcntl.flock", refuse)
     run_lock.release_results(run_lock.lock_results(["d"]))
     assert Path("results/d").is_dir()
+
+
+class Locked:
+    """A class as Snakemake's: a folder that its lock finds locked already, or not."""
+
+    is_locked = True
+
+    @contextlib.contextmanager
+    def lock(self):
+        if self.is_locked:
+            raise LookupError("Snakemake's own message")
+        yield
+
+
+def or_exit(function):
+    try:
+        function()
+    except StageError as error:
+        raise SystemExit(str(error)) from None
+
+
+@pytest.fixture
+def persistence(monkeypatch):
+    made = type("Persistence", (Locked,), {"lock": Locked.lock})
+    monkeypatch.setattr(run_lock, "_BEGINS_S", 0.2)
+    run_lock.tell_locked(made, LookupError, or_exit)
+    return made
+
+
+def test_a_run_that_takes_our_lock_a_little_later_is_told_in_our_line(persistence):
+    taken = []
+    first = threading.Timer(0.05, lambda: taken.append(run_lock.lock_folder()))
+    first.start()
+    with pytest.raises(SystemExit, match="another run is at work in this folder"):
+        persistence().lock().__enter__()
+    first.join()
+    taken.pop().close()
+
+
+def test_what_a_killed_run_left_locked_is_said_by_snakemake(persistence):
+    with pytest.raises(LookupError, match="Snakemake's own message"), persistence().lock():
+        pass
+
+
+def test_a_folder_that_is_free_is_locked_as_ever(persistence, monkeypatch):
+    monkeypatch.setattr(persistence, "is_locked", False)
+    begun = False
+    with pytest.raises(LookupError, match="of the run"), persistence().lock():
+        begun = True
+        raise LookupError("of the run")
+    assert begun

@@ -1,3 +1,4 @@
+import re
 from functools import partial
 
 import numpy as np
@@ -9,7 +10,7 @@ from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import pose_kind
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import open_colours, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 RNG = np.random.default_rng(2)
@@ -82,6 +83,46 @@ def test_far_coordinates_are_moved_by_whole_hundreds_of_metres(tmp_path, caplog)
         pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=1)
     np.testing.assert_allclose(pose[:, :3, 3] - POSES[:, :3, 3], [[10, 20, 300]] * 2, atol=1e-6)
     assert "x 500000, y 5400000" in caplog.text
+
+
+SIDES = np.where(SPHERE > 0, 255, 40).astype(int)
+
+
+def read_coloured(path, **settings):
+    """Return the points of the first station, and what their colours are."""
+    files = dataset_files.find_files(path)
+    with open_survey(files, **(LIMITS | settings)) as survey:
+        (scan,) = survey.scans([0])
+    with open_colours(files, **(LIMITS | settings)) as read_colours:
+        return scan.xyz_m, None if read_colours is None else read_colours(0)
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_the_points_that_are_kept_have_their_colours(tmp_path, suffix):
+    near_and_far = WITH_GAPS * np.where(np.arange(500) % 3 == 0, 1.0, 0.5)[:, None]
+    path = WRITERS[suffix](tmp_path / f"a{suffix}", POSES[:1], [near_and_far], SIDES)
+    xyz_m, rgb = read_coloured(path, min_range_m=2.0)
+    assert 100 < len(xyz_m) == len(rgb) < 250
+    # of 8 bits as 16
+    np.testing.assert_array_equal(rgb, np.where(xyz_m > 0, 65535, 40 * 257))
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_without_colours_none_are_read(tmp_path, suffix):
+    path = WRITERS[suffix](tmp_path / f"a{suffix}", POSES[:1], [SPHERE])
+    assert read_coloured(path)[1] is None
+
+
+def test_colours_lie_between_the_limits_that_a_scan_states(tmp_path):
+    path = write_e57(tmp_path / "a.e57", POSES[:1], [SPHERE], SIDES)
+
+    def state(xml):
+        xml = re.sub(r"<(color\w+Maximum)( type=\S+)>255<", r"<\1\2>1023<", xml)
+        return re.sub(r"<(color\w+Minimum)( type=\S+)/>", r"<\1\2>40</\1>", xml)
+
+    change_xml(path, state)
+    xyz_m, rgb = read_coloured(path)
+    np.testing.assert_array_equal(rgb, np.where(xyz_m > 0, round(215 / 983 * 65535), 0))
 
 
 def read_all(path):

@@ -1,11 +1,14 @@
 """GDAL reads level, units and openings in IMDF's words."""
 
+import json
+
 import numpy as np
 import pyogrio
 import shapely
 
 from helpers import floorplan_making
 from scanplan.exports.data import element_ids, element_tables, geopackage, wayfinding
+from scanplan.exports.model_origin import Site
 
 
 def test_rooms_are_units_and_doors_openings_of_one_level(tmp_path):
@@ -34,3 +37,31 @@ def test_rooms_are_units_and_doors_openings_of_one_level(tmp_path):
     assert doors["accessibility"] == ["wheelchair", None]
     assert doors["category"] == ["pedestrian"] * 2 and doors["door_type"] == ["unspecified"] * 2
     assert len({*level["id"], *units["id"], *doors["id"]}) == 5
+
+
+def test_geojson_has_the_same_with_the_members_of_imdf(tmp_path):
+    rooms = floorplan_making.rooms()
+    rooms["use"][:] = ["restroom", "our den"]
+    drawn = floorplan_making.plan(rooms=rooms)
+    rows = element_tables.tabulate_elements(drawn, element_ids.ids_from_places(drawn))
+    site = Site("EPSG:25832", 500_000.0, 5_400_000.0, turn_deg=90.0)
+    path = tmp_path / "imdf.geojson"
+    path.write_text(wayfinding.format_imdf(drawn, rows, site))
+    made = json.loads(path.read_text())
+    by_type = {}
+    for feature in made["features"]:
+        by_type.setdefault(feature["feature_type"], []).append(feature)
+    assert {kind: len(found) for kind, found in by_type.items()} == {
+        **{"level": 1, "unit": 2, "opening": 2}
+    }
+    # what is no category of IMDF's is a room
+    assert [unit["properties"]["category"] for unit in by_type["unit"]] == ["restroom", "room"]
+    door = by_type["opening"][0]
+    assert door["properties"]["door"]["type"] == "unspecified"
+    assert door["properties"]["accessibility"] == ["wheelchair"]
+    assert {f["properties"]["level_id"] for f in by_type["unit"]} == {by_type["level"][0]["id"]}
+    about, _, shapes, _ = pyogrio.raw.read(path)
+    assert about["crs"] == "EPSG:25832"
+    # turned by a quarter: what lies east of the map's origin lies north of the site's
+    x0, y0, x1, y1 = shapely.total_bounds(shapely.from_wkb(shapes))
+    assert 499_990 < x0 < x1 < 500_001 and 5_399_999 < y0 < y1 < 5_400_010

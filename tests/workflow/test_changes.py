@@ -1,5 +1,6 @@
 """Two surveys of a floor, the later in another frame after a wall was moved, by one command."""
 
+import csv
 import json
 import math
 
@@ -40,7 +41,9 @@ def compared(project_root, tmp_path_factory):
     for name, building, seed in (("before", "tiny_office", 1), ("after", "later.geojson", 2)):
         survey = f"simulate: {{building: {building}, seed: {seed}, {common}}}\n"
         (project.folder / f"{name}.yaml").write_text(survey)
-    result = project.run("changes", *given("before.yaml", "after.yaml"))
+    listed = "path\tfloor\nbefore.yaml\tground\nafter.yaml\tground\n"
+    (project.folder / "surveys.tsv").write_text(listed)
+    result = project.run("changes", "grown", "results/floors.csv", *given("surveys.tsv"))
     assert result.returncode == 0, result.stderr
     return project
 
@@ -88,6 +91,42 @@ def test_the_later_model_says_which_wall_moved(compared):
     moved = [of for of in stated if of and of["Verdict"] == "moved"]
     assert len(moved) == 1 and moved[0]["Differs"]
     assert abs(moved[0]["Shift"]) == pytest.approx(NEW_M - OLD_M, abs=0.02)
+    ids = {
+        name: set(
+            tables.read_table(
+                compared.folder / f"results/{name}/plan/ids.parquet", schemas.ELEMENT_IDS
+            )["global_id"]
+        )
+        for name in ("before", "after")
+    }
+    borne = {wall.GlobalId for wall in model.by_type("IfcWall")}
+    assert len(borne & ids["before"]) >= 4 and not ids["before"] & ids["after"]
+    assert {of["IdInPlan"] for of in stated if of} <= ids["after"]
+
+
+def test_the_plan_of_both_has_the_wall_where_it_is_now(compared):
+    folder = compared.folder / "results/after/grown"
+    assert {file.name for file in folder.iterdir()} == {f"grown.{s}" for s in dataset.GROWN}
+    features = json.loads((folder / "grown.geojson").read_text())["features"]
+    walls = [f["geometry"]["coordinates"] for f in features if f["properties"]["kind"] == "wall"]
+    inner = [x for (x, y0), (x1, y1) in walls if abs(x - x1) < 0.1 < abs(y1 - y0) and 2 < x < 4]
+    assert inner == pytest.approx([NEW_M] * len(inner), abs=0.03) and inner
+    columns = tables.read_table(folder / "grown.parquet", schemas.CONTRIBUTIONS)
+    assert set(columns["survey"]) == {"before", "after"}
+    assert columns["seen_share"].max() > 0.9 and (columns["p_stands"] <= 1).all()
+    said = (folder / "grown.txt").read_text()
+    assert "before to after: wall: " in said and " moved (" in said
+
+
+def test_a_table_of_floors_has_a_row_for_each_survey(compared):
+    text = (compared.folder / "results/floors.csv").read_text()
+    rows = list(csv.DictReader(text.splitlines()))
+    assert [(row["floor"], row["survey"], row["earlier"]) for row in rows] == [
+        ("ground", "before", ""),
+        ("ground", "after", "before"),
+    ]
+    assert [row["walls_changed"] for row in rows] == ["", "1"]
+    assert all(float(row["area_m2"]) > 10 for row in rows)
 
 
 def test_one_survey_alone_is_refused_in_a_line(compared):

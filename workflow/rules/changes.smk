@@ -37,6 +37,7 @@ if len(GIVEN) > 1:
         input:
             table="results/{dataset}/changes/{earlier}/changes.parquet",
             ids="results/{dataset}/plan/ids.parquet",
+            earlier=ids_of_earlier,
             model="results/{dataset}/plan/plan.ifc",
         output:
             annotated="results/{dataset}/changes/{earlier}/changes.ifc",
@@ -55,8 +56,73 @@ if len(GIVEN) > 1:
         script:
             "../../scripts/annotate_changes.py"
 
+    rule grow_plan:
+        """Make one plan of all surveys of a floor up to this one, and tell what each contributed."""
+        input:
+            unpack(plans_until),
+        output:
+            table="results/{dataset}/grown/grown.parquet",
+            csv="results/{dataset}/grown/grown.csv",
+            geojson="results/{dataset}/grown/grown.geojson",
+            svg="results/{dataset}/grown/grown.svg",
+            pdf="results/{dataset}/grown/grown.pdf",
+            png="results/{dataset}/grown/grown.png",
+            dxf="results/{dataset}/grown/grown.dxf",
+            summary="results/{dataset}/grown/grown.txt",
+        log:
+            "logs/{dataset}/grow_plan.log",
+        benchmark:
+            "benchmarks/{dataset}/grow_plan.tsv"
+        threads: 2
+        resources:
+            mem_mb=grown(mem_mb=4000),
+            runtime=grown(runtime=60),
+        params:
+            code=code_of("grow_plan"),
+            names=lambda wildcards: surveys_until(wildcards.dataset),
+            settings=all_settings,
+        script:
+            "../../scripts/grow_plan.py"
+
 
 rule changes:
     """Tell what changed from each given dataset to the next, surveys of one floor in their order."""
     input:
         changes_of_datasets,
+
+
+rule grown:
+    """Make one plan of all given surveys of a floor, in their order, and tell what changed."""
+    input:
+        grown_datasets,
+
+
+rule list_floors:
+    """Tell in one table what every floor was like at each of its surveys, and what had changed."""
+    input:
+        unpack(tables_of_floors),
+        page=FLOORS_PAGE,
+    output:
+        csv="results/floors.csv",
+        page="results/floors.html",
+    log:
+        "logs/list_floors.log",
+    benchmark:
+        "benchmarks/list_floors.tsv"
+    threads: 1
+    resources:
+        mem_mb=1500,
+        runtime=10,
+    params:
+        code=code_of("list_floors"),
+        surveys=lambda wildcards: surveys_of_floors(),
+    script:
+        "../../scripts/list_floors.py"
+
+
+rule floors:
+    """Tell of all floors over time: areas, doors, and what changed from each survey to the next."""
+    input:
+        "results/floors.csv",
+        "results/floors.html",
+        changes_of_floors,

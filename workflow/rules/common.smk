@@ -44,16 +44,19 @@ from scanplan.project import (
 from scanplan.project.code_files import digest_helpers
 from scanplan.project.dataset import (
     CHANGES,
+    GROWN,
     describe_dataset,
     find_truth,
     list_comparison,
     list_deviations,
+    list_floors,
+    list_replaced_models,
     list_results,
     name_datasets,
     pair_surveys,
     survey_files,
 )
-from scanplan.project.dataset_files import RESERVED
+from scanplan.project.dataset_files import RESERVED, is_of_stations
 from scanplan.project.design_file import choose_design
 from scanplan.project.name_pattern import match_names
 from scanplan.project.provenance import (
@@ -344,6 +347,12 @@ def recordings(wildcards):
     """Files that hold a dataset's clouds and poses."""
     dataset = DATASETS[wildcards.dataset]
     return of_dataset(dataset, dataset.recordings)
+
+
+def recordings_of_stations(wildcards):
+    """The same of stations, nothing of others."""
+    files = recordings(wildcards)
+    return files if is_of_stations(files) else []
 
 
 def content_of_recordings(wildcards):

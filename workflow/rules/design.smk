@@ -25,6 +25,8 @@ if any(found.designs for found in DATASETS.values()):
             code=code_of("compare_design"),
             settings=setting(stage_settings.select_design),
             limits=limits_of_design,
+            # of an earlier design, they would tell of that one
+            unwanted=models_of_earlier_design,
         script:
             "../../scripts/compare_design.py"
 

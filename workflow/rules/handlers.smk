@@ -2,6 +2,7 @@ import logging
 import os
 from pathlib import Path
 
+from snakemake.exceptions import LockException
 from snakemake.settings.enums import Quietness
 from scanplan.interrupts import end_work
 from snakemake.persistence import PersistenceBase
@@ -123,6 +124,7 @@ if workflow.is_main_process and not IS_MODULE:
 if not IS_MODULE:
     shorten_traces(is_begun=True)
     failed_stages.redo_failed(PersistenceBase)
+    run_lock.tell_locked(PersistenceBase, LockException, or_end)
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
 

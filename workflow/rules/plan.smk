@@ -183,6 +183,7 @@ rule export_presentation:
     output:
         svg="results/{dataset}/plan/presentation.svg",
         pdf="results/{dataset}/plan/presentation.pdf",
+        tiles="results/{dataset}/plan/presentation_a3.pdf",
         png="results/{dataset}/plan/presentation.png",
         dxf="results/{dataset}/plan/presentation.dxf",
         walls="results/{dataset}/plan/presentation.parquet",
@@ -247,8 +248,10 @@ for number, formats in enumerate(chosen_formats()):
 
 
 rule export_cloud:
-    """Write the registered points as a LAZ file."""
+    """Write the registered points as a LAZ file, and a picture of them from above."""
     input:
+        # of stations: they have colours
+        recordings=recordings_of_stations,
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
         selection=plan_selection,
@@ -256,6 +259,7 @@ rule export_cloud:
         free=plan_table("free"),
     output:
         cloud="results/{dataset}/cloud.laz",
+        picture="results/{dataset}/cloud.png",
     log:
         "logs/{dataset}/export_cloud.log",
     benchmark:
@@ -266,6 +270,7 @@ rule export_cloud:
         runtime=grown(runtime=60),
     params:
         code=code_of("export_cloud"),
+        reading=section("input"),
         stop=section("selection", "stop"),
         settings=setting(stage_settings.select_cloud),
     script:

@@ -81,31 +81,63 @@ def page_files(*names, folder="workflow/report/page"):
 REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "edit.css"),
     *("page.js", "edits.js", "drawn_edits.js", "tools.js", "choices.js"),
-    *("elements.js", "saying.js", "walk.js", "save.js"),
+    *("elements.js", "saying.js", "solid.js", "three.js", "walk.js", "save.js"),
 )
 CHANGES_PAGE = page_files("changes.html.j2", "changes.css", "page.css")
+FLOORS_PAGE = page_files("floors.html.j2", "overview.css")
 
 
 def plan_of(survey):
     """What a plan is compared by, of the dataset that a wildcard names, prefixed by the survey's letter."""
     wildcard = {"a": "earlier", "b": "dataset"}[survey]
 
-    def of(path):
-        return lambda wildcards: path(getattr(wildcards, wildcard))
+    def file(part):
+        return lambda wildcards: survey_files_of(getattr(wildcards, wildcard))[part]
 
-    def table(name):
-        return of(lambda dataset: plan_table_of(dataset, name))
+    return {f"{survey}_{part}": file(part) for part in COMPARED}
 
-    plan = ("faces", "walls", "openings", "rooms", "free", "furniture", "evidence")
-    files = {name: table(name) for name in plan}
-    files["confidence"] = of(
-        lambda dataset: kept([f"results/{dataset}/plan/confidence.parquet"])
-    )
-    files["scans"] = of(lambda dataset: f"results/{dataset}/scans.parquet")
-    files["registration"] = of(
-        lambda dataset: f"results/{dataset}/registration.parquet"
-    )
-    return {f"{survey}_{name}": file for name, file in files.items()}
+
+COMPARED = (
+    *("faces", "walls", "openings", "rooms", "free", "furniture", "evidence"),
+    *("confidence", "scans", "registration"),
+)
+
+
+def survey_files_of(dataset):
+    """The tables of a dataset that it is compared with others by."""
+    files = {part: plan_table_of(dataset, part) for part in COMPARED[:7]}
+    files["confidence"] = kept([f"results/{dataset}/plan/confidence.parquet"])
+    for part in ("scans", "registration"):
+        files[part] = f"results/{dataset}/{part}.parquet"
+    return files
+
+
+def ids_of_earlier(wildcards):
+    """The ids of the earlier survey's elements; none where no files with ids are made of it."""
+    earlier = wildcards.earlier
+    return f"results/{earlier}/plan/ids.parquet" if formats_of(earlier) else []
+
+
+def surveys_until(dataset):
+    """The datasets that are given before one, the earliest first, and itself."""
+    names = list(GIVEN)
+    return names[: names.index(dataset) + 1]
+
+
+def plans_until(wildcards):
+    """What the plans of all surveys are joined by, each prefixed by the number of its survey."""
+    return {
+        f"s{row}_{part}": file
+        for row, dataset in enumerate(surveys_until(wildcards.dataset))
+        for part, file in survey_files_of(dataset).items()
+    }
+
+
+def grown_datasets(wildcards):
+    """The plan of all given surveys of a floor, and what changed from each to the next."""
+    files = changes_of_datasets(wildcards)
+    latest = list(GIVEN)[-1]
+    return [f"results/{latest}/grown/grown.{suffix}" for suffix in GROWN] + files
 
 
 def changes_of_datasets(wildcards):
@@ -118,6 +150,38 @@ def changes_of_datasets(wildcards):
     ]
 
 
+def surveys_of_floors():
+    """The floors of the given surveys: floor, survey, and the one before it of the same floor."""
+    floors = or_end(list_floors, RUN["dataset"])
+    return [
+        {"floor": floor, "survey": survey, "earlier": earlier}
+        for floor, surveys in floors.items()
+        for earlier, survey in zip(["", *surveys], surveys)
+    ]
+
+
+def changes_of_floors(wildcards):
+    """The pages of what changed on every floor, to which the table leads, and the reports."""
+    pages = []
+    for of in surveys_of_floors():
+        pages.append(f"results/{of['survey']}/report.html")
+        if of["earlier"]:
+            pages.append(f"results/{of['survey']}/changes/{of['earlier']}/changes.html")
+    return pages
+
+
+def tables_of_floors(wildcards):
+    """What is told of every floor at every survey, each prefixed by the number of its row."""
+    files = {}
+    for row, of in enumerate(surveys_of_floors()):
+        known = survey_files_of(of["survey"])
+        files |= {f"s{row}_{part}": known[part] for part in COMPARED[:8]}
+        if of["earlier"]:
+            place = f"results/{of['survey']}/changes/{of['earlier']}/changes.parquet"
+            files[f"s{row}_changes"] = place
+    return files
+
+
 def with_model(dataset):
     """The suffix of what a dataset's building model says, where it has one."""
     formats = DATASETS[dataset].settings["plan"]["export"]["formats"]
@@ -127,6 +191,11 @@ def with_model(dataset):
 def design_of(wildcards):
     """The design that the job's dataset is held against."""
     return or_end(choose_design, wildcards.dataset, DATASETS[wildcards.dataset].designs)
+
+
+def models_of_earlier_design(wildcards):
+    """What is left where the job's dataset was held against a building model before, and is no more."""
+    return or_end(list_replaced_models, DATASETS[wildcards.dataset])
 
 
 def deviations_of_datasets(wildcards):

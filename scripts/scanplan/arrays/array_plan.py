@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from threadpoolctl import threadpool_limits
 
-from scanplan.arrays.given_scans import GivenScans, PlacedScans, read_given, read_poses
+from scanplan.arrays.given_scans import GivenScans, Placed, PlacedScans, read_given, read_poses
 from scanplan.extraction import extractors, segments
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan, make_floorplan
@@ -160,7 +160,7 @@ def make_plan(
     known = poses if is_known else _register(given, poses, threads)
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
-        return _assemble(PlacedScans(given, known), name, threads)
+        return assemble_plan(PlacedScans(given, known), name, threads)
 
 
 def _register(given: GivenScans, poses: npt.ArrayLike, threads: int) -> RegisteredScans:
@@ -191,7 +191,7 @@ def _register(given: GivenScans, poses: npt.ArrayLike, threads: int) -> Register
     return registered_scans.select_kept_scans(columns, _ORIGIN)
 
 
-def _choose_scans(placed: PlacedScans) -> IntArray:
+def _choose_scans(placed: Placed) -> IntArray:
     """Return the scans (k,) that the plan is made of, by rank."""
     cells = wall_cells.WallCellSettings(
         **stage_settings.select_wall_cells(placed.settings, methods.WALL_LIMITS)
@@ -217,7 +217,7 @@ def _choose_scans(placed: PlacedScans) -> IntArray:
     return ordering["scan_id"][:count]
 
 
-def _extract_segments(placed: PlacedScans, scan_ids: IntArray) -> Columns:
+def _extract_segments(placed: Placed, scan_ids: IntArray) -> Columns:
     """Return the wall segments of some scans: the columns of `schemas.WALLS`."""
     name = placed.settings["plan"]["extractor"]
     settings = stage_settings.select_extractor(placed.settings, name)
@@ -231,7 +231,14 @@ def _extract_segments(placed: PlacedScans, scan_ids: IntArray) -> Columns:
     return segments.segment_columns(scan_ids.tolist(), found)
 
 
-def _assemble(placed: PlacedScans, name: str, threads: int) -> ArrayPlan:
+def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
+    """Choose few of registered scans, find their walls, and assemble these.
+
+    Raises
+    ------
+    StageError
+        If the scans show no wall.
+    """
     chosen_ids = _choose_scans(placed)
     scan_ids = np.sort(chosen_ids)
     rows = placed.rows(scan_ids)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -36,6 +37,33 @@ class GivenScans:
     t_ns: IntArray
     planar: bool
     settings: Settings
+
+
+class Placed(Protocol):
+    """Registered scans in the map frame, with all settings of a plan."""
+
+    settings: Settings
+    planar: bool
+    known: RegisteredScans
+    sensors_m: dict[int, FloatArray]
+
+    @property
+    def scan_ids(self) -> IntArray:
+        """(n,) int32, increasing."""
+        ...
+
+    @property
+    def n_points(self) -> IntArray:
+        """How many points each scan has, (n,) int64."""
+        ...
+
+    def scans(self, scan_ids: IntArray | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
+        ...
+
+    def rows(self, scan_ids: IntArray) -> IntArray:
+        """Return the rows (k,) of registered scans."""
+        ...
 
 
 class PlacedScans:

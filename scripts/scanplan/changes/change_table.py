@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, Change
+from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES, Change
 from scanplan.plan.floorplan import say_count
 from scanplan.types import Array
 
@@ -37,15 +38,22 @@ def tabulate_changes(changes: Sequence[Change]) -> dict[str, Array]:
 
 def tabulate_shapes(changes: Sequence[Change]) -> dict[str, Array]:
     """Return the columns of what was measured of elements, and where they are."""
-    shapes = np.array([of.shape for of in changes], object)
     moved_m = np.array([of.moved_m for of in changes], float).reshape(-1, 2)
-    is_line = shapely.get_dimensions(shapes) == 1 if len(shapes) else np.empty(0, bool)
-    length_m, area_m2 = (measure(shapes) for measure in (shapely.length, shapely.area))
     return {
         "shift_m": np.array([of.shift_m for of in changes], float),
         "sigma_m": np.array([of.sigma_m for of in changes], float),
         "x_moved_m": moved_m[:, 0].copy(),
         "y_moved_m": moved_m[:, 1].copy(),
+        **measure_shapes([of.shape for of in changes]),
+    }
+
+
+def measure_shapes(listed: Sequence[BaseGeometry]) -> dict[str, Array]:
+    """Return the columns of how large shapes are: lengths of lines, areas of others, and all."""
+    shapes = np.array(listed, object)
+    is_line = shapely.get_dimensions(shapes) == 1 if len(shapes) else np.empty(0, bool)
+    length_m, area_m2 = (measure(shapes) for measure in (shapely.length, shapely.area))
+    return {
         "length_m": np.where(is_line, length_m, np.nan),
         "area_m2": np.where(is_line, np.nan, area_m2),
         "geometry": shapely.to_wkb(shapes, byte_order=1).astype(object),
@@ -87,9 +95,9 @@ def summarise_changes(changes: Sequence[Change]) -> list[str]:
 def _summarise(table: str, changes: Sequence[Change]) -> str:
     of_table = [c for c in changes if c.table == table]
     parts = []
-    for verdict in (*CHANGES, SAME, NOT_SEEN):
+    for verdict in (*CHANGES, *STATES, SAME, NOT_SEEN):
         found = [c for c in of_table if c.verdict == verdict]
-        sure = [c for c in found if c.is_change or verdict not in CHANGES]
+        sure = [c for c in found if c.is_told or verdict in (SAME, NOT_SEEN)]
         if sure:
             length = f" ({sum(c.shape.length for c in sure):.1f} m)" if table == "wall" else ""
             parts.append(f"{len(sure)} {verdict.replace('_', ' ')}{length}")

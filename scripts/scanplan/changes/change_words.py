@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from scanplan.changes.verdicts import CHANGES, Change
+from scanplan.changes.verdicts import CHANGES, STATES, Change
 
 
 class ChangeWords(NamedTuple):
@@ -37,7 +37,7 @@ def say_change(change: Change) -> ChangeWords:
     numbers = [("a", change.number_a), ("b", change.number_b)]
     number = "/".join(f"{survey}{n}" for survey, n in numbers if n >= 0)
     kind = change.kind_a or change.kind_b or change.table
-    is_doubtful = change.verdict in CHANGES and not change.is_change
+    is_doubtful = change.verdict in (*CHANGES, *STATES) and not change.is_told
     by_cm = ""
     if math.isfinite(change.shift_m):
         sigma = f" ± {100 * change.sigma_m:.1f}" if math.isfinite(change.sigma_m) else ""

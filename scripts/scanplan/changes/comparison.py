@@ -9,14 +9,13 @@ from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
 from scanplan.changes.seen_faces import list_seen_faces
-from scanplan.changes.surveys import RaySight, Survey, find_free_floor, read_rays
+from scanplan.changes.surveys import RaySight, ScanReader, Survey, find_free_floor, read_rays
 from scanplan.changes.verdicts import SIGMAS, Change
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.store.schemas import COLUMN, PIECE
-from scanplan.store.tables import ScanStore
 
-Scans = tuple[ScanStore, RegisteredScans]
+Scans = tuple[ScanReader, RegisteredScans]
 """The points of a survey's scans, and where they were taken."""
 
 
@@ -70,8 +69,12 @@ def tie_plans(a: FloorPlan, b: FloorPlan) -> FrameTie:
 
 def place_survey(plan: FloorPlan, scans: Scans, motion: PlaneMotion, tie: FrameTie) -> Survey:
     """Return a survey in the common frame, to which a motion leads from its own."""
-    slack_m = max(AT_M, SIGMAS * tie.fit.scatter_m)
-    return Survey(plan, RaySight(read_rays(*scans, plan, motion), slack_m), motion)
+    return Survey(plan, RaySight(read_rays(*scans, plan, motion), find_slack_m(tie)), motion)
+
+
+def find_slack_m(tie: FrameTie) -> float:
+    """Return what rays are off by at walls of two surveys that were tied."""
+    return max(AT_M, SIGMAS * tie.fit.scatter_m)
 
 
 def compare_placed(a: Survey, b: Survey, tie: FrameTie) -> Comparison:

@@ -1,50 +1,45 @@
 """Openings of two surveys compared: by their places first, then by rays, and leaves by recesses."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
-from scanplan.changes import ray_cells, verdicts
+from scanplan.changes import opening_sight, ray_cells, verdicts
+from scanplan.changes.opening_sight import Opening, Views
 from scanplan.changes.pairing import Pairing, pair_most
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import (
+    GONE,
+    LIKELY,
+    MOVED,
+    NOT_SEEN,
+    OPENED,
+    SAME,
+    SHUT,
+    SIGMAS,
+    Change,
+)
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import WAYS, centrelines_m
 from scanplan.plan.tolerances import END_M
-from scanplan.rays.tolerances import FEW, STRAY_SHARE
-from scanplan.types import BoolArray, FloatArray
 
 _NEAR_M = 0.6  # across: an opening of a wall that has moved has moved with it
 _COSINE = math.cos(math.radians(10))
 _OVERLAP = 0.5  # of the narrower of two: they are one
-_OPEN = 0.3  # of cells that rays go through: a way, though a leaf stands in the rest
 _PASSED = 0.5  # of cells between two places of an edge
-_EDGE_SIGMA_M = END_M * math.sqrt(2) / 2  # of an edge in two surveys, of which each errs by half
-_CLOSED = 0.7  # of cells that rays end at: a wall, or a leaf
-_FLUSH_M = 0.02  # a leaf is set back from one side of its wall at least; plaster is not
-_FLANK_M = 0.6  # of wall beside an opening
+_EDGE_SIGMA_M = END_M * math.sqrt(2) / 2  # of an edge, where too few say what edges differ by
+_LEAST_SIGMA_M = 0.003  # what jambs are off by at the least: plaster and frames
+_PER_MEDIAN = 1.4826  # a standard deviation, of the median of what is normal, without its sign
+_EDGES = 8  # of four openings: fewer do not say what edges differ by
+_WRONG = 0.06  # of edges that have not moved: 17 of 268 in five pairs lie beyond three sigma
 _ONE_SIDE = 0.75  # how sure a wall is that is flush on the side that was seen: some leaves are
+_SWINGS = 0.3  # of doors, like furniture: between two surveys some are opened or shut
 
 _KINDS = ("door", "passage", "window", "glass")
 """Types that say what an opening is: a gap says that this is not known."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Opening:
-    """An opening in the common frame; `half_m` is half of its wall's thickness."""
-
-    number: int
-    kind: str
-    line: Line
-    width_m: float
-    half_m: float
-
-    @property
-    def ends_m(self) -> FloatArray:
-        return self.line.at(np.array([0.0, self.width_m]))
 
 
 def compare_openings(a: Survey, b: Survey) -> list[Change]:
@@ -57,23 +52,27 @@ def compare_openings(a: Survey, b: Survey) -> list[Change]:
     """
     of_a, of_b = list(_list_openings(a)), list(_list_openings(b))
     matched = _match(of_a, of_b)
+    known = [
+        (of_a[i], of_b[j]) for i, j in matched.pairs if _is_known(of_a[i]) or _is_known(of_b[j])
+    ]
+    sigmas_m = {of_way: _measure_sigma_m(known, of_way) for of_way in (True, False)}
     paired = [
-        _judge_pair(of_a[i], of_b[j], a, b)
-        for i, j in matched.pairs
-        if _is_known(of_a[i]) or _is_known(of_b[j])
+        _judge_pair(one, other, a, b, sigmas_m[_are_ways(one, other)]) for one, other in known
     ]
     gone = [_judge_alone(of_a[i], a, b) for i in matched.lone_a if _is_known(of_a[i])]
     new = [_judge_alone(of_b[j], b, a).turned() for j in matched.lone_b if _is_known(of_b[j])]
     return [*paired, *gone, *new]
 
 
-def _is_known(opening: _Opening) -> bool:
+def _is_known(opening: Opening) -> bool:
     return opening.kind in _KINDS
 
 
-def _list_openings(survey: Survey) -> Iterator[_Opening]:
+def _list_openings(survey: Survey) -> Iterator[Opening]:
     plan = survey.plan
     left_m, right_m = plan.sides_m
+    unrated = np.full(len(plan.openings["opening"]), np.nan)
+    rated = np.nan_to_num(np.asarray(plan.openings.get("p_true", unrated), float), nan=1.0)
     lines_m = survey.motion.move(centrelines_m(plan.openings))
     for row, number in enumerate(plan.openings["opening"].tolist()):
         host = int(plan.hosts[row])
@@ -82,17 +81,18 @@ def _list_openings(survey: Survey) -> Iterator[_Opening]:
             continue
         line, width_m = ray_cells.line_between(lines_m[row])
         half_m = float(left_m[host] + right_m[host]) / 2 if plan.thick[host] else 0.0
-        yield _Opening(number, str(plan.openings["type"][row]), line, width_m, half_m)
+        kind, p_true = str(plan.openings["type"][row]), float(rated[row])
+        yield Opening(number, kind, line, width_m, half_m, p_true)
 
 
-def _match(of_a: list[_Opening], of_b: list[_Opening]) -> Pairing:
+def _match(of_a: list[Opening], of_b: list[Opening]) -> Pairing:
     """Return which openings of two surveys are one: those that overlap most first."""
     overlaps = np.array([[_overlap(one, other) for other in of_b] for one in of_a])
     overlaps = overlaps.reshape(len(of_a), len(of_b))
     return pair_most(np.where(overlaps >= _OVERLAP, overlaps, 0.0))
 
 
-def _overlap(one: _Opening, other: _Opening) -> float:
+def _overlap(one: Opening, other: Opening) -> float:
     """Return which part of the narrower of two openings lies beside the other."""
     if abs(float(one.line.direction @ other.line.direction)) < _COSINE:
         return 0.0
@@ -104,10 +104,35 @@ def _overlap(one: _Opening, other: _Opening) -> float:
     return shared_m / min(one.width_m, other.width_m)
 
 
-def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
-    """Return whether an opening is where it was: by that of its edges that has moved most."""
+def _are_ways(one: Opening, other: Opening) -> bool:
+    return {one.kind, other.kind} <= set(WAYS)
+
+
+def _pair_edges(one: Opening, other: Opening) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return where both edges are in either survey, along the one opening."""
     begin_m, end_m = np.sort(one.line.along_m(other.ends_m)).tolist()
-    edges_m = ((0.0, begin_m), (one.width_m, end_m))
+    return (0.0, begin_m), (one.width_m, end_m)
+
+
+def _measure_sigma_m(pairs: Sequence[tuple[Opening, Opening]], of_ways: bool) -> float:
+    """Return what edges of doors and passages, or of other openings, differ by in two surveys.
+
+    By their median: most have not moved, and those that have do not count.
+    """
+    shifts_m = [
+        new_m - old_m
+        for one, other in pairs
+        if _are_ways(one, other) == of_ways
+        for old_m, new_m in _pair_edges(one, other)
+    ]
+    if len(shifts_m) < _EDGES:
+        return _EDGE_SIGMA_M
+    return max(_PER_MEDIAN * float(np.median(np.abs(shifts_m))), _LEAST_SIGMA_M)
+
+
+def _judge_pair(one: Opening, other: Opening, a: Survey, b: Survey, sigma_m: float) -> Change:
+    """Return whether an opening is where it was: by that of its edges that has moved most."""
+    edges_m = _pair_edges(one, other)
     old_m, new_m = max(edges_m, key=lambda edge: abs(edge[1] - edge[0]))
     shift_m = new_m - old_m
     same = Change(
@@ -115,16 +140,17 @@ def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
         one.number,
         other.number,
         SAME,
-        1 - verdicts.rate_shift(shift_m, _EDGE_SIGMA_M, 1),
+        1 - verdicts.rate_shift(shift_m, sigma_m, 1, _WRONG),
         shapely.LineString(one.ends_m),
         one.kind,
         other.kind,
         shift_m=shift_m,
-        sigma_m=_EDGE_SIGMA_M,
+        sigma_m=sigma_m,
         doubt=_compare_kinds(one.kind, other.kind),
     )
-    if abs(shift_m) <= SIGMAS * _EDGE_SIGMA_M:
-        return same
+    # rays between both places are asked by cells
+    if abs(shift_m) <= max(SIGMAS * sigma_m, ray_cells.CELL_M):
+        return _judge_state(same, one, a, b)
     # outwards rays of b go through what was wall, inwards those of a through what is
     is_wider = (shift_m < 0) == (old_m == 0.0)
     span_m = (min(old_m, new_m), max(old_m, new_m))
@@ -135,14 +161,14 @@ def _judge_pair(one: _Opening, other: _Opening, a: Survey, b: Survey) -> Change:
     if np.mean(later.is_passed) < _PASSED or p < 1 / 2:
         return same
     # what closes it may be a leaf, or a pane that some rays end at
-    closed = _Opening(
+    closed = Opening(
         -1,
         "",
         Line(one.line.at(np.array(span_m[0])), one.line.normal),
         span_m[1] - span_m[0],
         one.half_m,
     )
-    if not is_wider and not _is_wall(closed, a, b):
+    if not is_wider and not opening_sight.is_wall(closed, a, b):
         return same
     x_m, y_m = (shift_m * one.line.direction).tolist()
     # of what is not known to be one opening it is no more than possible
@@ -155,65 +181,41 @@ def _compare_kinds(kind: str, other: str) -> str:
     return "" if is_one else f"{kind} in one survey, {other} in the other"
 
 
-def _judge_alone(opening: _Opening, of: Survey, by: Survey) -> Change:
+def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     """Return what another survey shows of an opening that it has not drawn."""
-    inner_m = (END_M, max(opening.width_m - END_M, END_M + ray_cells.CELL_M))
-    own, other = (s.sight.look_at(opening.line, inner_m, opening.half_m) for s in (of, by))
     shape = shapely.LineString(opening.ends_m)
 
     def tell(verdict: str, p: float, doubt: str = "") -> Change:
         return Change("opening", opening.number, -1, verdict, p, shape, opening.kind, doubt=doubt)
 
-    # of a window a planar scanner sees the wall below, or nothing
-    if own.is_flat != other.is_flat and opening.kind not in WAYS:
+    views = opening_sight.look_through(opening, of, by)
+    if views.is_open:
+        return tell(SAME, 1 - verdicts.rate_places(views.n_ending, views.n_passing))
+    if not views.is_closed:
         return tell(NOT_SEEN, math.nan)
-    is_way = (own.passes > 0) & (own.hits <= STRAY_SHARE * (own.hits + own.passes))
-    if own.is_flat or other.is_flat:
-        is_way = np.repeat(is_way.any(axis=1, keepdims=True), other.hits.shape[1], axis=1)
-    hits = np.where(is_way, other.hits, 0).sum(axis=1)
-    passes = np.where(is_way, other.passes, 0).sum(axis=1)
-    n_passing, n_ending = (
-        len(np.unique(told[is_way[told[:, 0], told[:, 1]], 2]))
-        for told in (other.passing, other.ending)
-    )
-    if np.mean(passes > hits) >= _OPEN:
-        return tell(SAME, 1 - verdicts.rate_places(n_ending, n_passing))
-    is_closed = (hits >= FEW) & (passes <= STRAY_SHARE * (hits + passes))
-    if np.mean(is_closed) < _CLOSED:
-        return tell(NOT_SEEN, math.nan)
-    flush = _find_flush_sides(opening, of, by)
-    if not flush.all() or not len(flush):
-        return tell(SAME, 1 - _ONE_SIDE, "shut, or closed by something set back from the wall")
-    p = verdicts.rate_places(n_ending, n_passing) * (1.0 if len(flush) > 1 else _ONE_SIDE)
-    doubt = "" if p >= LIKELY else "flush with the one side that was seen, as some leaves are"
-    return tell(GONE, p, doubt)
+    flush = opening_sight.find_flush_sides(opening, of, by)
+    is_flush = len(flush) > 0 and bool(flush.all())
+    p = verdicts.rate_places(views.n_ending, views.n_passing) * is_flush
+    p *= 1.0 if len(flush) > 1 else _ONE_SIDE
+    if p >= LIKELY:
+        return tell(GONE, p)
+    # whatever closes it, it is closed: which of the two is told apart by its other side alone
+    doubt = f"walled up, {p:.2f}: flush with the one side that was seen" if is_flush else ""
+    # what its own plan holds for no opening may be beside furniture that was carried
+    is_held = opening.p_true >= 1 / 2
+    return tell(SHUT, _rate_shut(views) * (1.0 if is_held else opening.p_true), doubt)
 
 
-def _is_wall(closed: _Opening, of: Survey, by: Survey) -> bool:
-    flush = _find_flush_sides(closed, of, by)
-    return len(flush) > 0 and bool(flush.all())
+def _rate_shut(views: Views) -> float:
+    return verdicts.rate_places(views.n_ending, views.n_passing, _SWINGS)
 
 
-def _find_flush_sides(opening: _Opening, of: Survey, by: Survey) -> BoolArray:
-    """Return of each side that was seen whether what closes an opening is flush with the wall.
-
-    Beside the opening that counts which is wall to the survey that has the opening: no pane.
-    """
-    flush: list[bool] = []
-    for sign in (1.0, -1.0):
-        line = Line(opening.line.centre, sign * opening.line.normal)
-        ends_m = np.sort(line.along_m(opening.ends_m))
-        span_m = (float(ends_m[0]) - _FLANK_M, float(ends_m[1]) + _FLANK_M)
-        reach_m = opening.half_m + _FLANK_M / 2
-        off_m = by.sight.place_returns(line, span_m, reach_m)
-        middle_m = span_m[0] + (np.arange(len(off_m)) + 0.5) * ray_cells.CELL_M
-        is_inner = (middle_m > ends_m[0] + END_M) & (middle_m < ends_m[1] - END_M)
-        is_flank = (middle_m < ends_m[0] - END_M) | (middle_m > ends_m[1] + END_M)
-        is_flank &= of.sight.look_at(line, span_m, opening.half_m).solid.any(axis=1)
-        inner_m, flank_m = (
-            off_m[cells][np.isfinite(off_m[cells])] for cells in (is_inner, is_flank)
-        )
-        # each cell is the median of some returns: one tells where a leaf is, beside furniture
-        if len(inner_m) and len(flank_m) >= FEW:
-            flush.append(bool(abs(np.median(inner_m) - np.median(flank_m)) <= _FLUSH_M))
-    return np.array(flush, bool)
+def _judge_state(same: Change, opening: Opening, a: Survey, b: Survey) -> Change:
+    """Return a door that stands where it was, or that it is shut now, or opened."""
+    if not {same.kind_a, same.kind_b} <= set(WAYS):
+        return same
+    for of, by, verdict in ((a, b, SHUT), (b, a, OPENED)):
+        views = opening_sight.look_through(opening, of, by)
+        if views.is_closed and (p := _rate_shut(views)) >= LIKELY:
+            return replace(same, verdict=verdict, p=p)
+    return same

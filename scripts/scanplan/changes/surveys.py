@@ -1,6 +1,6 @@
 """A survey as it is compared with another: its plan, its faces, and rays of its scans."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -18,12 +18,24 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.store.registered_scans import RegisteredScans
-from scanplan.store.tables import ScanStore
 from scanplan.types import FloatArray, IntArray
 
 _MOST_SCANS = 300  # evenly over the drive: every wall of a floor is seen by many of them
 _MOST_RAYS = 3_000_000  # of all of them: 100 MB, and a second to sort
 _OPEN_M = 0.1  # below the ceiling nothing is asked: of a lintel or a beam
+
+
+class ScanReader(Protocol):
+    """Registered scans as a `tables.ScanStore` reads them."""
+
+    @property
+    def planar(self) -> bool:
+        """Whether the sensor measures in one plane only."""
+        ...
+
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans or of those asked for."""
+        ...
 
 
 class Sight(Protocol):
@@ -101,7 +113,7 @@ def find_free_floor(plan: FloorPlan) -> BaseGeometry:
 
 
 def read_rays(
-    store: ScanStore, registered: RegisteredScans, plan: FloorPlan, motion: PlaneMotion
+    store: ScanReader, registered: RegisteredScans, plan: FloorPlan, motion: PlaneMotion
 ) -> RaySet:
     """Return rays of scans all over a drive in another frame, heights above the plan's floor.
 

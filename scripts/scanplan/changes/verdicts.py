@@ -9,9 +9,13 @@ from dataclasses import dataclass, field, replace
 from shapely.geometry.base import BaseGeometry
 
 SAME, MOVED, GONE, NEW, NOT_SEEN = "same", "moved", "gone", "new", "not_seen"
-VERDICTS = (SAME, MOVED, GONE, NEW, NOT_SEEN)
+SHUT, OPENED = "shut", "opened"
+VERDICTS = (SAME, MOVED, GONE, NEW, SHUT, OPENED, NOT_SEEN)
 """What may have become of an element."""
 CHANGES = (MOVED, GONE, NEW)
+STATES = (SHUT, OPENED)
+"""Of doors: what rays show, though the building is the same unless a shut one is walled up."""
+_SEEN_FROM_LATER = {GONE: NEW, SHUT: OPENED, OPENED: SHUT}
 LIKELY = 0.9
 """A change that is less likely is doubtful: to be verified on site."""
 CHANGED = 0.05
@@ -67,8 +71,13 @@ class Change:
 
     @property
     def is_change(self) -> bool:
-        """Whether it is a change that is likely."""
+        """Whether it is a change of the building that is likely."""
         return self.verdict in CHANGES and self.p >= LIKELY
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it is that, or a door that is likely shut now, or opened."""
+        return self.verdict in (*CHANGES, *STATES) and self.p >= LIKELY
 
     def turned(self) -> "Change":
         """Return it as seen from the other survey: what is gone there is new here."""
@@ -78,7 +87,7 @@ class Change:
             number_b=self.number_a,
             kind_a=self.kind_b,
             kind_b=self.kind_a,
-            verdict=NEW if self.verdict == GONE else self.verdict,
+            verdict=_SEEN_FROM_LATER.get(self.verdict, self.verdict),
         )
 
 
@@ -100,13 +109,15 @@ def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:
     return odds / (1 + odds)
 
 
-def rate_shift(shift_m: float, sigma_m: float, n_shown: int) -> float:
+def rate_shift(shift_m: float, sigma_m: float, n_shown: int, wrong: float = _WRONG) -> float:
     """Return how likely it is that a wall has moved that was measured to have.
 
     Parameters
     ----------
     n_shown : int
         How many show it, each for itself: faces on one side and the other, returns at both places.
+    wrong : float
+        Share of those that have not moved and are drawn of something else in one survey.
 
     Examples
     --------
@@ -114,7 +125,7 @@ def rate_shift(shift_m: float, sigma_m: float, n_shown: int) -> float:
     (True, True)
     """
     density = math.exp(-0.5 * (shift_m / sigma_m) ** 2) / (sigma_m * math.sqrt(2 * math.pi))
-    wrong = _WRONG**n_shown
+    wrong = wrong**n_shown
     moved = CHANGED / (2 * REACH_M)
     same = (1 - CHANGED) * ((1 - wrong) * density + wrong / (2 * REACH_M))
     return moved / (moved + same)

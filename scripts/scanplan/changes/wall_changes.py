@@ -29,7 +29,7 @@ _MATCHED, _IN_OPENING, _PASSED, _HIT, _UNKNOWN = range(5)
 
 
 @dataclass(frozen=True, eq=False)
-class _Wall:
+class Wall:
     """A wall in the common frame, or a piece of a curved one, in cells along its line.
 
     Attributes
@@ -55,10 +55,12 @@ class _Wall:
 
     @property
     def span_m(self) -> tuple[float, float]:
+        """From where to where along its line."""
         return 0.0, self.n_cells * CELL_M
 
     @property
     def middle_m(self) -> FloatArray:
+        """The middles of its cells along its line, (c,) float64."""
         return (np.arange(self.n_cells) + 0.5) * CELL_M
 
 
@@ -105,9 +107,9 @@ def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     """Yield what another survey shows of the walls of one."""
-    others = {wall.number: wall for wall in _list_walls(by)}
+    others = {wall.number: wall for wall in list_walls(by)}
     own_m, others_m = (s.motion.move(centrelines_m(s.plan.openings)) for s in (of, by))
-    for wall in _list_walls(of):
+    for wall in list_walls(of):
         found = _find_shifts(wall, shifts)
         earlier, later = (s.sight.look_at(wall.line, wall.span_m, wall.half_m) for s in (of, by))
         compared = ray_cells.compare_looks(earlier, later)
@@ -133,7 +135,8 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
                 yield _judge_rays(wall, kind, cells, compared)
 
 
-def _list_walls(survey: Survey) -> Iterator[_Wall]:
+def list_walls(survey: Survey) -> Iterator[Wall]:
+    """Yield the walls of a survey in the common frame, curved ones in pieces that hardly bow."""
     plan = survey.plan
     left_m, right_m = plan.sides_m
     rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
@@ -145,7 +148,7 @@ def _list_walls(survey: Survey) -> Iterator[_Wall]:
         for ends_m in survey.motion.move(_cut_lines(plan, row)):
             line, length_m = ray_cells.line_between(ends_m)
             n_cells = ray_cells.count_cells((0.0, length_m))
-            yield _Wall(number, line, half_m, n_cells, float(rated[row]), is_built_in)
+            yield Wall(number, line, half_m, n_cells, float(rated[row]), is_built_in)
 
 
 def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
@@ -166,7 +169,7 @@ def _is_built_in(plan: FloorPlan, row: int) -> bool:
     return all(shapely.dwithin(end, others, _MEETS_M).any() for end in ends)
 
 
-def _cover(wall: _Wall, openings_m: FloatArray) -> BoolArray:
+def _cover(wall: Wall, openings_m: FloatArray) -> BoolArray:
     """Return which cells (c,) of a wall openings (n, 2, 2) cover that lie along it."""
     along_m = np.sort(wall.line.along_m(openings_m), axis=1)
     off_m = np.abs(wall.line.offset_m(openings_m)).max(axis=1, initial=0.0)
@@ -175,7 +178,7 @@ def _cover(wall: _Wall, openings_m: FloatArray) -> BoolArray:
     return np.any(is_in, axis=0)
 
 
-def _find_shifts(wall: _Wall, shifts: FaceShifts) -> _Shifts:
+def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
     pairs = shifts.pairs
     shift_m, sigma_m = np.full((2, 2, wall.n_cells), np.nan)
     number = np.full(wall.n_cells, -1, np.int64)
@@ -242,7 +245,7 @@ def _length_m(cells: slice) -> float:
     return (cells.stop - cells.start) * CELL_M
 
 
-def _judge_shift(wall: _Wall, cells: slice, found: _Shifts, others: Mapping[int, _Wall]) -> Change:
+def _judge_shift(wall: Wall, cells: slice, found: _Shifts, others: Mapping[int, Wall]) -> Change:
     known = np.flatnonzero(np.isfinite(found.shift_m[cells])) + cells.start
     shift_m, sigma_m = (
         float(np.median(values[known])) for values in (found.shift_m, found.sigma_m)
@@ -269,7 +272,7 @@ def _judge_shift(wall: _Wall, cells: slice, found: _Shifts, others: Mapping[int,
     return replace(same, verdict=MOVED, p=p, moved_m=(x_m, y_m), doubt=doubt)
 
 
-def _rate_both(wall: _Wall, other: _Wall | None) -> float:
+def _rate_both(wall: Wall, other: Wall | None) -> float:
     """Return how likely it is that what two surveys show is a wall.
 
     Of what stands free the one that doubts it is right: the other has seen less of it.
@@ -280,7 +283,7 @@ def _rate_both(wall: _Wall, other: _Wall | None) -> float:
     return choose(wall.p_true, other.p_true)
 
 
-def _judge_rays(wall: _Wall, kind: int, cells: slice, later: Later) -> Change:
+def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
     is_of_it = np.zeros(wall.n_cells, bool)
     is_of_it[cells] = True
     n_passing, n_ending = later.count_places(is_of_it)
@@ -293,5 +296,5 @@ def _judge_rays(wall: _Wall, kind: int, cells: slice, later: Later) -> Change:
     return Change("wall", wall.number, -1, NOT_SEEN, math.nan, shape)
 
 
-def _shape(wall: _Wall, cells: slice) -> shapely.LineString:
+def _shape(wall: Wall, cells: slice) -> shapely.LineString:
     return shapely.LineString(wall.line.at(np.array([cells.start, cells.stop]) * CELL_M))

@@ -34,6 +34,7 @@ KINDS = {
     "SWING-RIGHT": "door",
     "SWING-2": "door",
     "DOORWAY": "door",
+    "SLIDING": "sliding door",
     "WINDOW": "window",
     "PASSAGE": "passage",
     "PARTING": "passage",

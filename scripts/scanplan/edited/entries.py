@@ -186,7 +186,7 @@ def _change(plan: EditedPlan, change: Change, row: Row, old: Entry | None) -> En
         more["kind"] = after.facts["kind"]
     if "opens_m" in names and after.facts["kind"] == "door":
         off_m = after.facts["opens_m"] - _middle(after)
-        more["opens"] = _place(_middle_of(row) + _middle(after) - _middle(before) + off_m)
+        more["swing"] = _place(_middle_of(row) + _middle(after) - _middle(before) + off_m)
     if change.kind == "room":
         more |= _say_room(after, names)
     if more == {"action": "remove"}:

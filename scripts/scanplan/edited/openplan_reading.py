@@ -15,7 +15,8 @@ from scanplan.exports.data.openplan import PER_M
 from scanplan.project import user_file
 from scanplan.types import FilePath, FloatArray
 
-_PASSAGE = "opening"  # a door without a leaf
+_KINDS = {"opening": "passage", "sliding": "sliding door"}
+"""What doors of a project are that do not swing, by their types."""
 _SWINGING = ("single", "double", "french")
 _MOST_BYTES = 2**26  # of a project, with the pictures that people lay into it
 _GLASS_M = 0.3  # a fixed window that begins lower is a pane down to the floor
@@ -91,7 +92,7 @@ def _read_openings(
 
 def _describe_door(item: Item, line_m: FloatArray) -> dict[str, Any]:
     kind = str(item.get("type", "single"))
-    facts: dict[str, Any] = {"kind": "passage" if kind == _PASSAGE else "door"}
+    facts: dict[str, Any] = {"kind": _KINDS.get(kind, "door")}
     if "height" in item:
         facts["lintel_m"] = _metres(item["height"])
     if kind in _SWINGING:

@@ -72,14 +72,14 @@ def take_edits(path: Path, results: Path | None, by: str = "") -> list[str]:
     plan = base.read_edited_plan(session.results)
     now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     stamp = {"when": now} | ({"by": texts.check_text("--by", by)} if by else {})
-    there = corrections_file.find_beside(session.place)
+    there = corrections_file.find_beside(session.find_place())
     said = [] if there is None else corrections_file.read_corrections(there)
     taken = entries.take_changes(plan, changes, entries.Said(before, said, stamp))
     if taken.entries != before:
         session.take(taken.entries)
     kept = f"{say_count(len(lost), 'room')} that the editor lost with walls stay as they are"
     told = [*_tell_other(edited, bases[chosen]), *([kept] if lost else [])]
-    return [*_tell(taken, session.place, chosen), *told]
+    return [*_tell(taken, session.find_place(), chosen), *told]
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -65,13 +65,19 @@ def format_geojson(plan: FloorPlan, evidence: Columns | None = None, site: Site 
         *_polygon_features("room", plan.rooms),
         *_polygon_features("furniture", plan.furniture),
     ]
+    placed = features
+    if site.is_placed:
+        placed = [_place_feature(feature, site) for feature in features]
+    return format_collection(plan.name, placed, **state_system(site))
+
+
+def state_system(site: Site) -> dict[str, object]:
+    """Return the members of a collection that say in which system it is; none of the map's."""
     if not site.is_placed:
-        return format_collection(plan.name, features)
+        return {}
     name = site.crs if site.epsg is None else f"urn:ogc:def:crs:EPSG::{site.epsg}"
-    stated = {"crs": {"type": "name", "properties": {"name": name}}}
     note = f"Coordinates are metres in {site.crs}, east and north, not longitude and latitude."
-    placed = (_place_feature(feature, site) for feature in features)
-    return format_collection(plan.name, placed, **stated, note=note)
+    return {"crs": {"type": "name", "properties": {"name": name}}, "note": note}
 
 
 def _place_feature(feature: Feature, site: Site) -> Feature:

@@ -205,9 +205,7 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
             "y_m": y_m,
             "closed": room.closed,
             "n_scans": room.n_scans,
-            "name": "",
-            "use": "",
-            "corrected": "",
+            **dict.fromkeys(("name", "use", "corrected"), ""),
             "geometry": shapely.to_wkb(room.polygon),
         }
         rows.append(row)
@@ -261,6 +259,7 @@ def furniture_columns(
     rows: list[Row] = [
         {
             "kind": piece.kind,
+            "named": "",
             "area_m2": piece.outline.area,
             "z_min_m": piece.z_min_m + floor_z_m,
             "z_max_m": piece.z_max_m + floor_z_m,
@@ -270,14 +269,19 @@ def furniture_columns(
         }
         for piece in pieces
     ]
-    for ends_m in leaves_m:
-        body = draw_leaf(ends_m)
-        unknown = dict.fromkeys(("z_min_m", "z_max_m"), math.nan)
-        shape = {"area_m2": body.area, "geometry": shapely.to_wkb(body)}
-        rows.append({"kind": schemas.LEAF, "n_points": 0, "n_scans": 0, **unknown, **shape})
+    rows += [leaf_columns(ends_m) for ends_m in leaves_m]
     return columns_of_rows(
         [{"furniture": number, **row} for number, row in enumerate(rows)], schemas.FURNITURE
     )
+
+
+def leaf_columns(ends_m: FloatArray, named: str = "") -> Row:
+    """Return a row of `schemas.FURNITURE` without its number: a leaf from end to end (2, 2)."""
+    body = draw_leaf(ends_m)
+    unknown = dict.fromkeys(("z_min_m", "z_max_m"), math.nan)
+    shape = {"area_m2": body.area, "geometry": shapely.to_wkb(body)}
+    counts = {"n_points": 0, "n_scans": 0}
+    return {"kind": schemas.LEAF, "named": named, **counts, **unknown, **shape}
 
 
 def columns_of_rows(rows: Sequence[Row], schema: schemas.Schema) -> dict[str, Array]:

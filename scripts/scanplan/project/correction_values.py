@@ -143,7 +143,7 @@ def _check_moment(entry: str, key: str, value: Any) -> str:
 
 
 _CHECKS: dict[str, Callable[[str, str, Any], Any]] = {
-    **dict.fromkeys(("at", "with", "world", "opens"), _check_place),
+    **dict.fromkeys(("at", "swing", "with", "world"), _check_place),
     **dict.fromkeys(("name", "number", "use", "by"), _check_text),
     **dict.fromkeys(SIZES_M, _check_size),
     "line": _check_line,

@@ -30,8 +30,8 @@ _KEYS = {
     ("face", "remove"): (("at",), ()),
     ("opening", "keep"): (("at",), ()),
     ("opening", "remove"): (("at",), ()),
-    ("opening", "change"): (("at",), ("kind", "line", "width_m", "sill_m", "lintel_m", "opens")),
-    ("opening", "add"): (("line", "kind"), ("sill_m", "lintel_m", "opens")),
+    ("opening", "change"): (("at",), ("kind", "line", "swing", "width_m", "sill_m", "lintel_m")),
+    ("opening", "add"): (("line", "kind"), ("swing", "sill_m", "lintel_m")),
     ("room", "keep"): (("at",), ()),
     ("room", "remove"): (("at",), ()),
     ("room", "change"): (("at",), ("name", "number", "use")),
@@ -59,11 +59,13 @@ OUTLINES = ("split", "merge")
 """What is done to the outlines of rooms, before anything is said of the rooms that it leaves."""
 _KINDS = {
     "wall": ("furniture", "column"),
-    "opening": ("door", "window", "passage", "glass"),
-    "furniture": ("furniture", "column"),
+    "opening": ("door", "sliding door", "window", "passage", "glass"),
+    "furniture": (
+        *("furniture", "column", "toilet", "basin", "bath", "shower", "sink", "cooker", "stairs"),
+    ),
 }
 """What a person may call an opening, what is drawn as a wall, and what stands about."""
-_PLACES = ("at", "line", "with", "world", "opens", "outline")
+_PLACES = ("at", "line", "swing", "with", "world", "outline")
 """Keys of places, in metres."""
 _DIGITS = 12
 """Of a digest of recordings: no two surveys that a person has are of the same."""
@@ -89,9 +91,11 @@ class Correction:
     line_m : two (float, float) or None
         Ends of what is added or taped, of where an element is moved to, or of what parts a room.
     kind : str
-        Of an opening, or what something is that is no wall.
+        Of an opening or a piece of furniture, or what something is that is no wall.
     name, number, use : str
         Of a room.
+    swing_m : (float, float) or None
+        A place beside a door, on the side that it opens to, nearer to its hinges.
     thickness_m, height_m : float or None
         Of a wall, from the floor on.
     width_m, sill_m, lintel_m : float or None
@@ -102,8 +106,6 @@ class Correction:
         East and north of a reference or check point.
     crs : str
         In which these are, such as EPSG:25832.
-    opens_m : (float, float) or None
-        Where the free end of a door's leaf is when it stands open.
     outline_m : tuple of (float, float) or None
         Corners of what stands about.
     length_m, sigma_m : float or None
@@ -121,6 +123,7 @@ class Correction:
     name: str = ""
     number: str = ""
     use: str = ""
+    swing_m: tuple[float, float] | None = None
     thickness_m: float | None = None
     height_m: float | None = None
     width_m: float | None = None
@@ -129,7 +132,6 @@ class Correction:
     with_m: tuple[float, float] | None = None
     world_m: tuple[float, float] | None = None
     crs: str = ""
-    opens_m: tuple[float, float] | None = None
     outline_m: tuple[tuple[float, float], ...] | None = None
     length_m: float | None = None
     sigma_m: float | None = None

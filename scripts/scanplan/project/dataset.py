@@ -6,7 +6,7 @@ No heavy imports: this runs while the workflow is being parsed.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -64,6 +64,8 @@ OF_ALL_SCANS = "walls"
 """The folder of what extractors find in all scans, which the comparison alone asks for."""
 CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
 """Suffixes of what is made of two surveys of a floor."""
+GROWN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "dxf", "txt")
+"""Suffixes of what is made of all surveys of a floor together."""
 DESIGN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "txt")
 """Suffixes of what is made of a survey and its design."""
 OF_MODEL = ("as_built.ifc", "deviations.bcf")
@@ -340,6 +342,28 @@ def pair_surveys(names: Sequence[str]) -> list[tuple[str, str]]:
     return list(pairwise(names))
 
 
+def list_floors(given: FilePath | list[FilePath] | None) -> dict[str, list[str]]:
+    """Return the surveys of each floor, the earliest first.
+
+    Parameters
+    ----------
+    given : None, path-like or list of path-like
+        As of `name_datasets`; a list in a file may state floors, see `dataset_list.read_floors`.
+
+    Raises
+    ------
+    StageError
+        As `name_datasets`.
+    """
+    stated: dict[str, str] = {}
+    for path in map(str, given if isinstance(given, list) else [given] if given else []):
+        stated |= dataset_list.read_floors(path) if dataset_list.is_list(path) else {}
+    floors: dict[str, list[str]] = {}
+    for name in name_datasets(given):
+        floors.setdefault(stated.get(name, name), []).append(name)
+    return floors
+
+
 def list_deviations(found: Dataset) -> list[str]:
     """List what is made of a dataset and its design.
 
@@ -348,9 +372,27 @@ def list_deviations(found: Dataset) -> list[str]:
     StageError
         If it has none, or several.
     """
-    design = design_file.choose_design(found.name, found.designs)
     files = [f"deviations.{suffix}" for suffix in DESIGN]
-    files += OF_MODEL if design.lower().endswith(".ifc") else ()
+    files += OF_MODEL if _has_model(found) else ()
+    return _place_beside_deviations(found, files)
+
+
+def list_replaced_models(found: Dataset) -> list[str]:
+    """List what an earlier design has left that was a building model, where this one is none.
+
+    Raises
+    ------
+    StageError
+        As `list_deviations`.
+    """
+    return _place_beside_deviations(found, () if _has_model(found) else OF_MODEL)
+
+
+def _has_model(found: Dataset) -> bool:
+    return design_file.choose_design(found.name, found.designs).lower().endswith(".ifc")
+
+
+def _place_beside_deviations(found: Dataset, files: Iterable[str]) -> list[str]:
     return [f"results/{found.name}/design/{file}" for file in files]
 
 

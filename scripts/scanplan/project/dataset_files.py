@@ -22,7 +22,7 @@ OF_LABORATORY = ("comparison", RESERVED, "thesis_more")
 """Targets of the laboratory's workflow, `workflow/thesis/Snakefile`."""
 TARGETS = ("all", *OF_LABORATORY)
 """What a command may ask for beside files."""
-_TAKEN = (*TARGETS, "summary.html", "summary.parquet")
+_TAKEN = (*TARGETS, "summary.html", "summary.parquet", "floors.csv", "floors.html")
 """What else stands under results/, or is asked for by its name."""
 _FILE_SUFFIXES = (
     *(".bag", ".mcap", ".db3"),

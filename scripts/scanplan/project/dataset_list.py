@@ -41,6 +41,32 @@ def read_list(file: FilePath) -> list[tuple[str, str]]:
     StageError
         If the file cannot be read, has no such columns or no line, or a line of it says too little.
     """
+    return [(name, path) for name, path, _ in _read(file)]
+
+
+def read_floors(file: FilePath) -> dict[str, str]:
+    """Read which floor each dataset of a list is a survey of.
+
+    Parameters
+    ----------
+    file : path-like
+        As of `read_list`, with a column `floor` if wanted: surveys of one floor have the same word
+        there, the earliest above.
+
+    Returns
+    -------
+    dict of str to str
+        By the name of a dataset; its own name where no floor is stated.
+
+    Raises
+    ------
+    StageError
+        As `read_list`.
+    """
+    return {name: floor or name for name, _, floor in _read(file)}
+
+
+def _read(file: FilePath) -> list[tuple[str, str, str]]:
     text = user_file.read_text(file, "give a list with the columns name and path")
     try:
         rows = csv.DictReader(io.StringIO(text, newline=""), delimiter="\t")
@@ -52,7 +78,7 @@ def read_list(file: FilePath) -> list[tuple[str, str]]:
     return datasets
 
 
-def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str]]:
+def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str, str]]:
     columns = rows.fieldnames or ()
     if "path" not in columns:
         named = ", ".join(columns) or "nothing"
@@ -60,7 +86,7 @@ def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str]
             f"{file}: its first line names {named}; name the columns {' and '.join(_COLUMNS)},"
             " separated by tabs"
         )
-    for column in _COLUMNS:
+    for column in (*_COLUMNS, "floor"):
         if (n_such := columns.count(column)) > 1:
             raise StageError(f"{file}: names the column {column} {n_such} times; keep one of them")
     for row in rows:
@@ -72,4 +98,5 @@ def _read_rows(file: FilePath, rows: csv.DictReader) -> Iterator[tuple[str, str]
         name = (row.get("name") or "").strip()
         if name and dataset_files.dataset_name(name) != name:
             raise StageError(f"{place}: {name!r} names no results; use letters, digits, _ . -")
-        yield name or dataset_files.dataset_name(path), path
+        floor = (row.get("floor") or "").strip()
+        yield name or dataset_files.dataset_name(path), path, floor

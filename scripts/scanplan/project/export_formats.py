@@ -14,6 +14,7 @@ FILES = {
     "ifc": {"ifc": "plan/plan.ifc"},
     "glb": {"glb": "plan/plan.glb"},
     "gpkg": {"gpkg": "plan/plan.gpkg"},
+    "imdf": {"imdf": "plan/imdf.geojson"},
     "csv": {f"{table}_csv": f"plan/{table}.csv" for table in ("walls", "openings", "rooms")},
     "json": {"json": "plan/rooms.json"},
     "tum": {"trajectory": "trajectory.tum", "localiser": "localiser.tum"},
@@ -30,12 +31,13 @@ FILES = {
 PRESENTATION = {
     "presentation": {
         **{suffix: f"plan/presentation.{suffix}" for suffix in ("svg", "pdf", "png", "dxf")},
+        "tiles": "plan/presentation_a3.pdf",
         "walls": "plan/presentation.parquet",
     }
 }
 """The same of the stage `export_presentation`."""
-CLOUD = ("laz", "cloud.laz")
-"""The format and the file of the stage `export_cloud`."""
+CLOUD = {"laz": {"cloud": "cloud.laz", "picture": "cloud.png"}}
+"""The same of the stage `export_cloud`."""
 
 
 LIBRARIES = {"ifc": "ifcopenshell", "editable": "ifcopenshell"}
@@ -70,6 +72,6 @@ def list_files(formats: Iterable[str]) -> dict[str, str]:
 def list_exports(formats: Iterable[str]) -> list[str]:
     """Return all files of some formats, below results/<dataset>/."""
     asked = list(formats)
-    laz, cloud = CLOUD
-    drawn = [file for name in PRESENTATION if name in asked for file in PRESENTATION[name].values()]
-    return [*list_files(asked).values(), *drawn, *([cloud] if laz in asked else [])]
+    others = PRESENTATION | CLOUD
+    drawn = [file for name in others if name in asked for file in others[name].values()]
+    return [*list_files(asked).values(), *drawn]

@@ -97,8 +97,8 @@ def select_hull_sampling(settings: Settings) -> Keywords:
 
 def select_visibility(settings: Settings) -> Keywords:
     """Return the keywords of `visibility_polygon`: views end below the wall above a door."""
-    seen = select_section(settings, "selection", "visibility")
-    return seen | {"max_height_m": settings["building"]["door_height_m"]}
+    own = select_section(settings, "selection", "visibility")
+    return own | {"max_height_m": settings["building"]["door_height_m"]}
 
 
 def select_wall_cells(settings: Settings, limits: Iterable[str]) -> Keywords:

@@ -42,13 +42,13 @@ class _Loader(yaml.SafeLoader):
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         pairs = node.value if isinstance(node, yaml.MappingNode) else ()
-        seen = set()
+        known = set()
         for key in (key for key, _ in pairs if isinstance(key, yaml.ScalarNode)):
             if key.tag == "tag:yaml.org,2002:merge":
                 raise _fault("`<<` stands for other values, write them out", key)
-            if key.value in seen:
+            if key.value in known:
                 raise _fault(f"duplicate key `{key.value}`, keep one of the two", key)
-            seen.add(key.value)
+            known.add(key.value)
         return super().construct_mapping(node, deep)
 
     def construct_scalar(self, node: yaml.ScalarNode | yaml.MappingNode) -> Any:

@@ -143,7 +143,7 @@ def observe_face(
 
 
 def look_beyond(
-    seen: FaceObservation, rays: RaySet, low_m: float, high_m: float, *, band_m: float
+    observation: FaceObservation, rays: RaySet, low_m: float, high_m: float, *, band_m: float
 ) -> FaceObservation:
     """Return an observation with the rays that go through a longer stretch of its line.
 
@@ -152,11 +152,11 @@ def look_beyond(
     rays, low_m, high_m, band_m
         As of `observe_face`.
     """
-    face = cast_at_face(rays, seen.line, low_m, high_m, at_m=band_m, occluded_within_m=0.0)
+    face = cast_at_face(rays, observation.line, low_m, high_m, at_m=band_m, occluded_within_m=0.0)
     free = np.flatnonzero(face.is_free(band_m + BEHIND_M))
     free = free.take(np.argsort(face.along_m.take(free), kind="stable"))
     return replace(
-        seen,
+        observation,
         free_m=face.along_m[free],
         free_z_m=face.height_m[free],
         free_scan=face.scan[free],

@@ -109,8 +109,8 @@ def _outline_of_sectors(azimuth_rad: FloatArray, way_m: FloatArray) -> FloatArra
     by_sector[sector, np.arange(len(sector)) - first[sector]] = range_m
     by_sector.sort(axis=1)
     # not the longest of all: one stray point would open a way through a wall
-    seen = np.flatnonzero(number)
-    reach_m[seen] = by_sector[seen, (0.9 * (number[seen] - 1)).astype(np.int64)]
+    filled = np.flatnonzero(number)
+    reach_m[filled] = by_sector[filled, (0.9 * (number[filled] - 1)).astype(np.int64)]
     edge = -np.pi + width_rad * np.arange(count + 1)
     begin, end = (
         np.column_stack([np.cos(e), np.sin(e)]) * reach_m[:, None] for e in (edge[:-1], edge[1:])

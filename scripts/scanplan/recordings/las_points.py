@@ -19,6 +19,8 @@ _TABLE = struct.Struct("<II")
 _SIZES = struct.Struct("<94xHII")
 """What a header begins with: its length, where points begin, how many records lie in between."""
 _RECORD = 54  # bytes of a record that is empty
+_COARSEST_M = 1.0  # that coordinates are rounded to: no scanner's
+_FARTHEST_M = 1e8  # of a country's coordinates: more than the way round the Earth
 
 
 class LasPoints(NamedTuple):
@@ -79,6 +81,10 @@ def list_blocks(path: Path) -> Iterator[LasBlock]:
             n_points = header.point_count
     except Exception as error:
         raise _damaged(path, error) from None
+    scales_m, origin_m = np.asarray(header.scales), np.asarray(header.offsets)
+    is_scaled = ((scales_m > 0) & (scales_m <= _COARSEST_M)).all()
+    if not is_scaled or not (np.abs(origin_m) < _FARTHEST_M).all():
+        raise _damaged(path, f"coordinates are steps of {scales_m} from {origin_m}")
     needed = n_points / _MOST_A_BYTE if is_packed else n_points * size
     if is_packed and begin + needed <= length:
         needed = _count_chunks(path, begin, length) * size  # each begins with a point as it is

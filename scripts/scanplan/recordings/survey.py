@@ -1,7 +1,7 @@
 """A survey as the stages see it: clouds and poses, from bags, a folder of scans, or stations."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.recordings.units import Units
 from scanplan.stage import log
+from scanplan.types import Array
 
 
 @contextmanager
@@ -99,6 +100,35 @@ def open_survey(
         if survey is None:
             survey = _open_recordings(files, stack, opening, topics_and_frame, common)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
+
+
+@contextmanager
+def open_colours(
+    files: Sequence[str], **reading: Any
+) -> Iterator[Callable[[int], Array | None] | None]:
+    """Open what tells the colours of a dataset's points.
+
+    Parameters
+    ----------
+    files, **reading
+        As of `open_survey`.
+
+    Yields
+    ------
+    callable or None
+        Returns of a scan_id the colours (n, 3) uint16 of the points that the survey has of it, in
+        their order, or None; there is none where nothing of the dataset has colours.
+    """
+    if not dataset_files.is_of_stations(files):
+        yield None
+        return
+    from scanplan.recordings.stations.station_scans import StationScans
+
+    with open_survey(files, **reading) as survey:
+        if isinstance(survey, StationScans) and survey.has_colours:
+            yield survey.read_colours
+        else:
+            yield None
 
 
 def _open_points(

@@ -2,14 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.recordings.integrity import pcd_size, ply_size
+from scanplan.recordings.integrity import pcd_size, ply_size, text_lines
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.types import Array, FloatArray
 
@@ -160,7 +159,7 @@ def _read_lines(
     names = [name for name in row.names or () if not name.startswith("_")]
     places = [begins[(row.names or ()).index(name)] for name in names]
     kinds = ["f8" if name in _AXES else row[name].base for name in names]
-    lines = list(islice(file, n_lines))
+    lines = text_lines.take_lines(file, n_lines, str(table.path))
     try:
         # it warns of no lines
         form = np.dtype(list(zip(names, kinds, strict=True)))

@@ -1,10 +1,12 @@
 """Where a sensor was, as text: `t x y z ...` a line, or a table whose first line names columns."""
 
+from array import array
 from pathlib import Path
 
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.recordings.integrity import text_lines
 from scanplan.types import FloatArray
 
 _NAMES = (
@@ -14,7 +16,8 @@ _NAMES = (
     ("z", "height", "altitude", "h", "u", "up", "pos_z", "z_m", "tz", "elevation"),
 )
 """What programs call time and place."""
-_MOST_BYTES = 2**28  # three days at 100 Hz
+_MOST_PLACES = 2**22  # eleven hours at 100 Hz, 34 MB a column
+_FARTHEST_M = 1e8  # of a country's coordinates: more than the way round the Earth
 _LONGEST_S = 7 * 24 * 3600  # of one trajectory
 
 
@@ -29,31 +32,14 @@ def read_trajectory(path: Path) -> tuple[FloatArray, FloatArray]:
     StageError
         If the file is no such text, or has fewer than two times.
     """
-    if path.stat().st_size > _MOST_BYTES:
-        raise StageError(
-            f"{path}: {path.stat().st_size} bytes, more than {_MOST_BYTES}: no trajectory; thin it"
-        )
-    columns = (0, 1, 2, 3)
-    rows: list[list[float]] = []
-    text = path.read_text(encoding="utf-8-sig", errors="replace")
-    for number, line in enumerate(text.splitlines(), 1):
-        is_comment = line.lstrip().startswith(("#", "%"))
-        words = line.lstrip(" #%").replace(",", " ").replace(";", " ").split()
-        if not words:
-            continue
-        if not rows and (is_comment or not _is_number(words[0])):
-            columns = _find_columns(words, columns)
-            continue
-        if is_comment:
-            continue
-        try:
-            rows.append([float(words[column]) for column in columns])
-        except (ValueError, IndexError):
-            raise StageError(
-                f"{path}: line {number} has no time and place (`t x y z`): {line[:60]!r}; mend it"
-            ) from None
-    values = np.array(rows).reshape(-1, 4)
+    values = _read_rows(path)
     values = values[np.isfinite(values).all(axis=1)]
+    farthest_m = np.abs(values[:, 1:]).max(initial=0.0)
+    if farthest_m > _FARTHEST_M:
+        raise StageError(
+            f"{path}: a place lies {farthest_m:g} m from the origin, beyond {_FARTHEST_M:g} m on no"
+            " Earth; give metres"
+        )
     # of places with one time the first is kept
     time_s, first = np.unique(values[:, 0], return_index=True)
     if len(time_s) < 2 or time_s[-1] - time_s[0] > _LONGEST_S:
@@ -63,6 +49,34 @@ def read_trajectory(path: Path) -> tuple[FloatArray, FloatArray]:
             f" {_LONGEST_S} s; give seconds, and one drive a file"
         )
     return time_s, values[first, 1:]
+
+
+def _read_rows(path: Path) -> FloatArray:
+    """Return time and place (n, 4) of each line."""
+    columns = (0, 1, 2, 3)
+    rows = array("d")
+    with path.open("rb") as file:
+        for number, raw in enumerate(text_lines.iterate_lines(file, str(path)), 1):
+            line = raw.decode("utf-8-sig" if number == 1 else "utf-8", "replace")
+            is_comment = line.lstrip().startswith(("#", "%"))
+            words = line.lstrip(" #%").replace(",", " ").replace(";", " ").split()
+            if not words:
+                continue
+            if not rows and (is_comment or not _is_number(words[0])):
+                columns = _find_columns(words, columns)
+                continue
+            if is_comment:
+                continue
+            try:
+                rows.extend([float(words[column]) for column in columns])
+            except (ValueError, IndexError):
+                raise StageError(
+                    f"{path}: line {number} has no time and place (`t x y z`): {line[:60]!r}; mend"
+                    " it"
+                ) from None
+            if len(rows) > 4 * _MOST_PLACES:
+                raise StageError(f"{path}: more than {_MOST_PLACES} places: no trajectory; thin it")
+    return np.array(rows).reshape(-1, 4)
 
 
 def _is_number(word: str) -> bool:

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGES, LIKELY
+from scanplan.changes.verdicts import CHANGES, LIKELY, STATES
 from scanplan.geometry import overlays
 from scanplan.report.templates import render_template
 from scanplan.types import FilePath
@@ -44,8 +44,8 @@ def format_page(
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     low_m, high_m = bounds[:, :2].min(axis=0) - _AROUND_M, bounds[:, 2:].max(axis=0) + _AROUND_M
     width_m, height_m = (high_m - low_m).tolist()
-    told = [c for c in compared.changes if c.verdict in CHANGES]
-    told.sort(key=lambda change: not change.is_change)
+    told = [c for c in compared.changes if c.verdict in (*CHANGES, *STATES)]
+    told.sort(key=lambda change: (not change.is_change, not change.is_told))
     return render_template(
         sources,
         _TEMPLATE,

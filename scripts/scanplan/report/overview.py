@@ -11,7 +11,7 @@ from scanplan.report.templates import render_template
 from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
-from scanplan.validation.doubts import list_to_verify
+from scanplan.validation.doubts import list_doubts
 
 Row = dict[str, Any]
 
@@ -88,7 +88,7 @@ def _describe_plan(files: Mapping[str, Path]) -> Row:
         "rooms": len(plan.rooms["room"]),
         "open_rooms": int((~plan.rooms["closed"]).sum()),
         "walls": len(plan.walls["wall"]),
-        "verify": len(list_to_verify(plan)),
+        "verify": len(list_doubts(plan)),
         **{f"{kind}s": int((kinds == kind).sum()) for kind in floorplan.OPENINGS},
         "predicted": float(validation["share"][-1]),
     }

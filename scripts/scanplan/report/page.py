@@ -2,9 +2,11 @@
 
 import base64
 import hashlib
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -14,6 +16,7 @@ from scanplan.report import (
     chart,
     page_tables,
     result_links,
+    solid_view,
     templates,
     walk,
     wording,
@@ -61,6 +64,7 @@ def report_page(
     plan: floorplan.FloorPlan,
     survey: SurveyFacts,
     points: PointImage,
+    in_space: Mapping[str, Any],
     run: RunFacts,
 ) -> str:
     """Return the page.
@@ -71,6 +75,8 @@ def report_page(
         File name to text of `page.html.j2` and of all that it asks for.
     points : point_image.PointImage
         What the chosen scans saw, from above.
+    in_space : dict
+        The same and the plan in space, as `solid_view.pack_view` returns them.
 
     Returns
     -------
@@ -134,6 +140,9 @@ def report_page(
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
+        in_space=in_space,
+        top_m=math.ceil(in_space["height_m"] * 20) / 20,
+        three=solid_view.pack_script(sources["three.js"]),
         data=_script_data(survey, run, objective, drawn),
     )
 

@@ -52,13 +52,18 @@ def draw_point_image(scans: Iterable[tuple[int, Array]], plan: FloorPlan) -> Poi
     PointImage
     """
     low_m, high_m = plan.bounds_m
-    low_m, high_m = low_m - MARGIN_M, high_m + MARGIN_M
+    shown = (_between_levels(xyz_m, plan) for _, xyz_m in scans)
+    return draw_places(shown, low_m - MARGIN_M, high_m + MARGIN_M)
+
+
+def draw_places(places: Iterable[Array], low_m: FloatArray, high_m: FloatArray) -> PointImage:
+    """Draw places, arrays (n, 2), between the least and the greatest x and y (2,), metres."""
     # finer than returns are exact there is nothing to see
     pixel_m = max(float(np.max(high_m - low_m)) / _LONGER_SIDE, tolerances.ON_M / 4)
     width, height = np.ceil((high_m - low_m) / pixel_m).astype(int).tolist()
     counts = np.zeros(width * height, np.int64)
-    for _, xyz_m in scans:
-        column, row = np.floor((_between_levels(xyz_m, plan) - low_m) / pixel_m).astype(int).T
+    for xy_m in places:
+        column, row = np.floor((xy_m - low_m) / pixel_m).astype(int).T
         inside = (column >= 0) & (column < width) & (row >= 0) & (row < height)
         pixels = row[inside] * width + column[inside]
         np.add.at(counts, pixels, 1)

@@ -1,8 +1,5 @@
 """A plan in a few lines of text: what there is, what is doubtful, what it was made of."""
 
-from itertools import groupby
-from operator import attrgetter
-
 import numpy as np
 
 from scanplan.errors import MOST_NAMED
@@ -10,11 +7,10 @@ from scanplan.plan import floorplan
 from scanplan.project.texts import fold_line
 from scanplan.report import page_tables, wording
 from scanplan.report.facts import SurveyFacts
-from scanplan.validation.doubts import list_to_verify, list_unrated
+from scanplan.validation.doubts import group_by_kind, list_unrated
 from scanplan.validation.verdict import judge_plan
 
 _INDENT = 9  # of the longest word before a line, `doubtful`
-_KINDS = ("opening", "wall", "room", "face")  # in the order of a summary
 
 
 def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
@@ -66,9 +62,8 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
 def _count_doubts(plan: floorplan.FloorPlan) -> list[str]:
     """Return in a phrase which elements to verify on site, the few of a kind by their numbers."""
     named: list[str] = []
-    found = sorted(list_to_verify(plan), key=lambda doubt: _KINDS.index(doubt.kind))
-    for kind, group in groupby(found, attrgetter("kind")):
-        numbers = [doubt.number for doubt in group]
+    for kind, found in group_by_kind(plan).items():
+        numbers = [doubt.number for doubt in found]
         few = f" ({', '.join(map(str, numbers))})" if len(numbers) <= MOST_NAMED else ""
         named.append(_count(len(numbers), kind) + few)
     return [f"{', '.join(named)} to verify on site (report.html says why)"] if named else []

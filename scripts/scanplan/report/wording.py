@@ -1,6 +1,5 @@
 """The report's sentences and head figures."""
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -96,11 +95,11 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     recorded = state_date(int(survey.poses["t_ns"][0]), "%Y-%m-%d %H:%M UTC")
     thickness_m = plan.walls["thickness_m"][plan.thick]
     thickness = f"{1000 * np.median(thickness_m):.0f} mm" if len(thickness_m) else "not known"
-    counts = Counter(doubt.kind for doubt in doubts.list_to_verify(plan))
+    by_kind = doubts.group_by_kind(plan)
+    counted = ", ".join(floorplan.say_count(len(of), kind) for kind, of in by_kind.items())
     reference = plan.georeference
     placed = [] if reference is None else [("on Earth", state_reference(reference))]
     placed += [("taped", state_lengths(plan))] if plan.taped_m else []
-    to_verify = [f"{n:,} {kind}{'' if n == 1 else 's'}" for kind, n in counts.items()]
     return [
         ("recorded", recorded),
         ("duration", f"{(t_s[-1] - t_s[0]) / 60:.1f} min"),
@@ -109,7 +108,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
         ("median thickness", thickness),
         ("area of rooms", _area_of_rooms(plan.rooms)),
         *placed,
-        ("to verify on site", ", ".join(to_verify) or "nothing that is marked"),
+        ("to verify on site", counted or "nothing that is marked"),
     ]
 
 

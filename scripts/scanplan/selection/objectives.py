@@ -74,14 +74,16 @@ def cover_wall_length(scans: SurveyScans) -> Objective:
     StageError
         If the table of observations holds other scans.
     """
-    seen = scans.tables["observations"]
-    if not np.isin(seen["scan_id"], scans.scan_ids).all():
+    observations = scans.tables["observations"]
+    if not np.isin(observations["scan_id"], scans.scan_ids).all():
         raise StageError(
             f"observations: of scans that are none of the {len(scans)} that have hulls;"
             " delete the results of this dataset and run again"
         )
-    row = np.searchsorted(scans.scan_ids, seen["scan_id"])
-    return CellCoverage(row, wall_cells.number_cells(seen), seen["length_m"], len(scans))
+    row = np.searchsorted(scans.scan_ids, observations["scan_id"])
+    return CellCoverage(
+        row, wall_cells.number_cells(observations), observations["length_m"], len(scans)
+    )
 
 
 class PolygonArea:

@@ -124,7 +124,7 @@ WITNESSES = {
         CAUSE,
         SKETCH,
         "the odometry jumps",
-        "the odometry jumps or is reset {value} times",
+        "the odometry jumps or is reset (in all: {value})",
         "how the rover moved meanwhile is taken from the scans alone",
         "record odometry that goes on, or a localiser's poses",
     ),
@@ -169,8 +169,8 @@ WITNESSES = {
         FOUND,
         PLAN,
         "the map changed on the way, and is one again",
-        "the map changed {value} times, and parts of the drive were laid into one map (seconds"
-        " after the first scan, and what ties them: {said})",
+        "the map changed on the way, and parts of the drive were laid into one map (changes in"
+        " all: {value}; seconds after the first scan, and what ties them: {said})",
         _OTHER_MAP,
         "measure a length on site that goes from one part into another",
     ),

@@ -316,15 +316,13 @@ ROOMS = Schema(
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
-        "name": "string",
-        "use": "string",
-        "corrected": "string",
+        **dict.fromkeys(("name", "use", "corrected"), "string"),
         "geometry": "binary",
     },
     ("room",),
     geometry=True,
 )
-"""Rooms of the plan; `name` and `use` are what a person says, empty where nobody did."""
+"""Rooms: `name` and `use` are what a person calls them, empty where nobody has."""
 FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 
@@ -336,12 +334,16 @@ corrected plan `n_corrections`, carried out, `unmatched_corrections`, why others
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
 """Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""
+SLIDING = "sliding"
+"""What a person calls a leaf that slides along its wall."""
+FIXTURES = ("toilet", "basin", "bath", "shower", "sink", "cooker", "stairs")
+"""What a person may call a piece of furniture that has a symbol of its own in drawings."""
 FURNITURE = Schema(
     "furniture",
-    2,
+    3,
     {
         "furniture": "int32",
-        "kind": "string",
+        **dict.fromkeys(("kind", "named"), "string"),
         **dict.fromkeys(("area_m2", "z_min_m", "z_max_m"), "float64"),
         "n_points": "int32",
         "n_scans": "int32",
@@ -352,7 +354,7 @@ FURNITURE = Schema(
 )
 """What stands in rooms and is no wall: outlines, by the points of chosen scans that show it.
 
-Of `kind` `PIECE`, `COLUMN` or `LEAF`.
+Of `kind` `PIECE`, `COLUMN` or `LEAF`; `named` what a person calls it, `SLIDING` or of `FIXTURES`.
 Heights are in the map frame, NaN of planar scans.
 """
 EVIDENCE = Schema(
@@ -535,16 +537,43 @@ CHANGES = Schema(
 """What became of the elements of an earlier survey, a, in a later one, b; all in the frame of a.
 
 `element` is wall (a stretch of one), opening, room or furniture; `number_a` and `number_b` are its
-numbers in the tables of either plan, -1 where it is in none. `verdict` is same, moved, gone, new or
-not_seen, `p` how likely that is (NaN of what was not seen), `likely` whether it is a change that
-counts as one; `doubt` says what else it may be. What is gone stood where rays of b go through, what
-is new where rays of a did. `shift_m` is how far b lies from a, `sigma_m` its standard deviation:
-of a wall across, to the left of its line in a, of an opening the edge that differs most, along it,
-of furniture the way of its middle. A room has moved where walls that bound it have.
+numbers in the tables of either plan, -1 where it is in none. `verdict` is same, moved, gone, new,
+shut, opened or not_seen, `p` how likely that is (NaN of what was not seen), `likely` whether it is
+a change of the building that counts as one; `doubt` says what else it may be. What is gone stood
+where rays of b go through, what is new where rays of a did. `shift_m` is how far b lies from a,
+`sigma_m` its standard deviation: of a wall across, to the left of its line in a, of an opening the
+edge that differs most, along it, of furniture the way of its middle. A room has moved where walls
+that bound it have.
 
 Of both surveys the file states the names `a` and `b`; `motion`, from the frame of b to that of a
 (yaw_rad, x_m, y_m), its `covariance` of x, y and yaw about `centre_m`, `residual_m` of the faces
 that agree and `share` of the smaller survey's; and `others`, motions that fit nearly as well. JSON.
+"""
+CONTRIBUTIONS = Schema(
+    "contributions",
+    1,
+    {
+        "contribution": "int32",
+        "element": "string",
+        "number": "int32",
+        "survey": "string",
+        "seen_share": "float64",
+        "is_last": "bool",
+        "age_days": "float64",
+        "p_stands": "float64",
+        **dict.fromkeys(("length_m", "area_m2"), "float64"),
+        "geometry": "binary",
+    },
+    ("contribution",),
+    geometry=True,
+)
+"""What each survey shows of the elements of a plan of several: a row for each pair.
+
+`element` is wall, opening or room, `number` its number in the plan of all, `survey` the name of a
+dataset, `seen_share` which part of it that survey saw, of what later ones did not overtake.
+`is_last` marks the latest that saw at least half of what any saw of it, `age_days` the time from
+then to the latest survey; `p_stands` is how likely the element is still as it was then: 1 of what
+the latest survey saw. The file states the `surveys` in their order and the `scans` of each. JSON.
 """
 DEVIATIONS = Schema(
     "deviations",

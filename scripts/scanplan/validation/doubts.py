@@ -20,6 +20,7 @@ MOST = 20
 MARKS = {EXISTENCE: "?", KIND: "kind?", PLACE: "place?", END: "end?", WIDTH: "width?"}
 """What stands beside an element on a sheet, by what of it is doubtful."""
 _PARTS = (END, WIDTH)
+_KINDS = ("opening", "wall", "room", "face", *_PARTS)  # in the order of a summary
 _WEAK = "few scans show it, or its place is uncertain"
 _COSTS = {"room": 4.0, "door": 3.0, "passage": 3.0, "wall": 2.0, "window": 1.0, "glass": 1.0}
 # what a wrong one costs its reader, beside others: a room more or less changes the whole plan, a
@@ -99,9 +100,15 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
     return sorted(found, key=lambda doubt: -doubt.cost)
 
 
-def list_to_verify(plan: FloorPlan) -> list[Doubt]:
-    """List what is to be verified as a whole, in the same order."""
-    return [doubt for doubt in list_doubts(plan) if not doubt.is_part]
+def group_by_kind(plan: FloorPlan) -> dict[str, list[Doubt]]:
+    """Return all doubts by kind, as the report, the summary and the sheet count them.
+
+    Ends of walls and widths of openings that else stand as they are drawn come last.
+    """
+    found: dict[str, list[Doubt]] = {kind: [] for kind in _KINDS}
+    for doubt in list_doubts(plan):
+        found[doubt.about if doubt.is_part else doubt.kind].append(doubt)
+    return {kind: of_kind for kind, of_kind in found.items() if of_kind}
 
 
 def group_by_room(doubts: Sequence[Doubt]) -> list[tuple[str, list[Doubt]]]:

@@ -127,14 +127,14 @@ def find_tolerance(faces: Columns, registration_sigma_m: float) -> float:
     faces : dict of str to (n,) array
         Columns of `schemas.FACES`.
     """
-    seen = np.isfinite(faces["rmse_m"])
+    observed = np.isfinite(faces["rmse_m"])
     noise_m = 0.0
-    if seen.any():
-        lines_m = centrelines_m(faces)[seen]
+    if observed.any():
+        lines_m = centrelines_m(faces)[observed]
         length_m = line_lengths_m(lines_m)
-        order = np.argsort(faces["rmse_m"][seen])
+        order = np.argsort(faces["rmse_m"][observed])
         half = np.searchsorted(np.cumsum(length_m[order]), length_m.sum() / 2)
-        noise_m = float(faces["rmse_m"][seen][order][half])
+        noise_m = float(faces["rmse_m"][observed][order][half])
     return SIGMAS * float(np.hypot(registration_sigma_m, noise_m))
 
 

@@ -86,11 +86,11 @@ def plan_visit(
     cells = standpoints.spread_cells(grid, settings.spacing_m)
     views = sight.turn_views(grid.xy_m[cells], reach)
     blocked = sight.block_sight(plan, reach.height_m)
-    seen = sight.find_seen(views, pieces, blocked, reach)
-    chosen = standpoints.choose_views(seen, pieces)
+    of_view = sight.find_seen(views, pieces, blocked, reach)
+    chosen = standpoints.choose_views(of_view, pieces)
     stops = _order_stops(grid, views, chosen, track_m[0])
-    shown = [seen[view] for view in stops.view.tolist()]
-    seeable, known = (_shares_shown(views, pieces, len(asked)) for views in (seen, shown))
+    shown = [of_view[view] for view in stops.view.tolist()]
+    seeable, known = (_shares_shown(of_views, pieces, len(asked)) for of_views in (of_view, shown))
     best = _find_best(shown, pieces, len(asked))
     standpoint = np.where(known > STRAY_SHARE, best, -1)
     return NextVisit(
@@ -135,17 +135,19 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     return _Stops(np.array([chosen[i - 1] for i in order[1:]], np.int64), ways_m)
 
 
-def _shares_shown(seen: Sequence[IntArray], pieces: Pieces, n_questions: int) -> FloatArray:
+def _shares_shown(
+    pieces_of_view: Sequence[IntArray], pieces: Pieces, n_questions: int
+) -> FloatArray:
     """Return the share of each question (q,) whose pieces any view sees."""
-    piece = np.unique(np.concatenate([np.empty(0, np.int64), *seen]))
+    piece = np.unique(np.concatenate([np.empty(0, np.int64), *pieces_of_view]))
     shares = np.bincount(pieces.question[piece], pieces.share[piece], n_questions)
     return shares.astype(float)
 
 
-def _find_best(seen: Sequence[IntArray], pieces: Pieces, n_questions: int) -> IntArray:
+def _find_best(pieces_of_view: Sequence[IntArray], pieces: Pieces, n_questions: int) -> IntArray:
     """Return which view, from 1, shows most of each question (q,); 0 where there is none."""
     best, most = np.zeros(n_questions, np.int64), np.full(n_questions, -1.0)
-    for number, of_view in enumerate(seen, 1):
+    for number, of_view in enumerate(pieces_of_view, 1):
         share = _shares_shown([of_view], pieces, n_questions)
         best[share > most] = number
         most = np.maximum(most, share)

@@ -70,7 +70,7 @@ def measure_reach(scans: Iterable[tuple[FloatArray, FloatArray]], floor_z_m: flo
 
 def _longest_gap(is_seen: np.ndarray) -> int:
     """Return the length of the longest run of sectors round the turn that nothing came from."""
-    seen = np.flatnonzero(is_seen)
-    if len(seen) == 0:
+    sectors = np.flatnonzero(is_seen)
+    if len(sectors) == 0:
         return len(is_seen)
-    return int(np.diff(seen, append=seen[0] + len(is_seen)).max()) - 1
+    return int(np.diff(sectors, append=sectors[0] + len(is_seen)).max()) - 1

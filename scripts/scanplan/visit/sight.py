@@ -71,7 +71,7 @@ def find_seen(
         See `block_sight`.
     """
     shapely.prepare(blocked)
-    seen: list[IntArray] = [np.empty(0, np.int64)] * len(views.place_m)
+    pieces_of_view: list[IntArray] = [np.empty(0, np.int64)] * len(views.place_m)
     places_m, place, n_views = np.unique(
         views.place_m, axis=0, return_inverse=True, return_counts=True
     )
@@ -90,8 +90,8 @@ def find_seen(
                 off_rad = bearing_rad - views.heading_rad[view]
                 off_rad = np.abs((off_rad + np.pi) % (2 * np.pi) - np.pi)
                 shown = piece[off_rad <= reach.field_rad / 2]
-            seen[view] = np.unique(shown)
-    return seen
+            pieces_of_view[view] = np.unique(shown)
+    return pieces_of_view
 
 
 def _find_clear(

@@ -51,36 +51,36 @@ class SettledQuestions(lazy_greedy.SingleGains):
 
     Parameters
     ----------
-    seen : sequence of n (k,) int64
+    pieces_of_view : sequence of n (k,) int64
         Which pieces each view sees, increasing.
     """
 
-    def __init__(self, seen: Sequence[IntArray], pieces: Pieces) -> None:
-        self._seen, self._pieces = seen, pieces
+    def __init__(self, pieces_of_view: Sequence[IntArray], pieces: Pieces) -> None:
+        self._pieces_of_view, self._pieces = pieces_of_view, pieces
         self._known = np.zeros(len(pieces.share), bool)
-        super().__init__(len(seen))
+        super().__init__(len(pieces_of_view))
 
     def measure_gain(self, i: int) -> float:
         """Return how many questions more a view would show, parts of them added up."""
-        seen = self._seen[i]
-        return float(self._pieces.share[seen[~self._known[seen]]].sum())
+        of_view = self._pieces_of_view[i]
+        return float(self._pieces.share[of_view[~self._known[of_view]]].sum())
 
     def cover(self, i: int) -> None:
         """See what a view sees."""
-        self._known[self._seen[i]] = True
+        self._known[self._pieces_of_view[i]] = True
 
 
-def choose_views(seen: Sequence[IntArray], pieces: Pieces) -> list[int]:
+def choose_views(pieces_of_view: Sequence[IntArray], pieces: Pieces) -> list[int]:
     """Choose the fewest views, greedily, until none shows more than a stray part of a question.
 
     Of views that show about as much the first is taken.
 
     Parameters
     ----------
-    seen : sequence of n (k,) int64
+    pieces_of_view : sequence of n (k,) int64
         Which pieces each view sees, increasing.
     """
-    if not any(map(len, seen)):
+    if not any(map(len, pieces_of_view)):
         return []
-    chosen = lazy_greedy.choose_greedily(SettledQuestions(seen, pieces), tie=STRAY_SHARE)
+    chosen = lazy_greedy.choose_greedily(SettledQuestions(pieces_of_view, pieces), tie=STRAY_SHARE)
     return [view for view, gain in chosen if gain > STRAY_SHARE]

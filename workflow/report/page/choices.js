@@ -105,7 +105,7 @@ const choices = (() => {
     if (action === "split") return `${named(edits.middle(line))} is two rooms`;
     const cm = (text, m) => m !== undefined && `${text} ${Number((100 * m).toFixed(1))} cm`;
     const parts = [(action === "remove" && gone[element]) || nouns[action], kind && `is ${kinds[kind] ?? (kind === "column" ? "a column" : kind)}`, line && !action && "moved", cm("thickness", thickness_m),
-      cm("width", width_m), cm("sill", sill_m), cm("top", lintel_m), cm("height", height_m), entry.opens && "opens as shown", use && `is used as ${use}`, name && `is ${name}`, number && `has number ${number}`];
+      cm("width", width_m), cm("sill", sill_m), cm("top", lintel_m), cm("height", height_m), entry.swing && "opens as shown", use && `is used as ${use}`, name && `is ${name}`, number && `has number ${number}`];
     const said = parts.filter(Boolean).join(", ");
     const subject = name || number ? where : words;
     return `${subject[0].toUpperCase()}${subject.slice(1)} ${said}`;

@@ -35,10 +35,10 @@
     const width = wall && edits.partOf(wall) ? thickness(wall) : thin;
     if (part) draw("solid", shape(element), width);
     if (entry.action === "remove") return;
-    if (entry.opens) {
+    if (entry.swing) {
       const jambs = entry.line ?? edits.lineOf(element);
-      const far = ([x, y]) => Math.hypot(x - entry.opens[0], y - entry.opens[1]);
-      draw("leaf", trace([jambs[far(jambs[0]) < far(jambs[1]) ? 0 : 1], entry.opens]));
+      const far = ([x, y]) => Math.hypot(x - entry.swing[0], y - entry.swing[1]);
+      draw("leaf", trace([jambs[far(jambs[0]) < far(jambs[1]) ? 0 : 1], entry.swing]));
     }
     const line = entry.line ?? (entry.width_m ? edits.widen(edits.lineOf(element), entry.width_m) : null);
     const d = line ? trace(line) : shape(element);

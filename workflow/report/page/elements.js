@@ -44,6 +44,7 @@ const elements = (() => {
     for (const part of document.querySelectorAll("[data-element]")) {
       part.classList.toggle("picked", part.dataset.element === element);
     }
+    dispatchEvent(new CustomEvent("picked", { detail: element }));
   }
 
   function showElement(element, place = placeOf(element)) {
@@ -58,7 +59,7 @@ const elements = (() => {
       else facts.append(make("dt", heads[i]), make("dd", cell.textContent));
     });
     const [kind, number] = element.split(" ");
-    const title = make("h3", `${kind[0].toUpperCase()}${kind.slice(1)} ${number}`);
+    const title = make("h2", `${kind[0].toUpperCase()}${kind.slice(1)} ${number}`);
     const entry = edits.entryOf(element);
     const state = entry && edits.isNew(entry) ? [make("p", `You said: ${choices.describe(entry)}`, { class: "said" })] : [];
     const acts = make("div", "", { class: "acts" });
@@ -70,7 +71,7 @@ const elements = (() => {
     const entry = edits.entries()[number];
     const acts = make("div", "", { class: "acts" });
     acts.append(button("Take it back", () => { edits.takeBack(entry); closeCard(); }));
-    openCard(place, make("h3", choices.describe(entry)), acts);
+    openCard(place, make("h2", choices.describe(entry)), acts);
   }
 
   plan.addEventListener("click", (event) => {

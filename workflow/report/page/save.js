@@ -136,20 +136,33 @@
   });
   async function watch() {
     const bar = byId("run-progress");
-    bar.hidden = false;
+    bar.hidden = byId("run-stop").hidden = false;
+    byId("run-go").hidden = true;
     for (;;) {
       const run = await server.ask("run").catch(() => ({ error: "The server does not answer; reload later." }));
-      tell(run.error ?? run.line, Boolean(run.error));
+      const left = run.running && run.left_s >= 1 ? `, about ${Math.round(run.left_s)} s left` : "";
+      tell(run.error ?? `${run.line}${left}`, Boolean(run.error));
       if (run.total) { bar.max = run.total; bar.value = run.ended; }
       if (run.error || !run.running) {
-        bar.hidden = true;
+        bar.hidden = byId("run-stop").hidden = true;
+        byId("run-go").hidden = !run.stopped;
         byId("save").disabled = false;
-        if (!run.error) location.reload();
+        if (!run.error && !run.stopped) location.reload();
         return;
       }
       await new Promise((wait) => setTimeout(wait, 400));
     }
   }
+  const act = async (what) => {
+    try {
+      const answer = await server.ask(what, {});
+      if (answer.status !== 200) tell(answer.error, true);
+    } catch {
+      tell("The server does not answer: changes are kept in this browser.", true);
+    }
+  };
+  byId("run-stop").addEventListener("click", () => act("stop"));
+  byId("run-go").addEventListener("click", () => act("go").then(watch));
   if (edits.news) tell(edits.news);
   else if (!edits.keeps()) tell("This browser keeps nothing of this page: download before you close it.", true);
   edits.begin();

@@ -15,7 +15,7 @@ const saying = (() => {
     if (kind === "opening" && (edits.entryOf(element)?.kind ?? edits.partOf(element).dataset.kind) === "door") {
       return [button("Opens so …", () => {
         then();
-        draw((line) => edits.change(element, { opens: line[1] }), "Tap on the hinge, then where the open leaf ends");
+        draw((line) => edits.change(element, { swing: line[1] }), "Tap on the hinge, then where the open leaf ends");
       })];
     }
     if (kind !== "room") return [];

@@ -131,6 +131,7 @@ const tools = (() => {
   function dropHandles() {
     moving = null;
     handles.replaceChildren();
+    plan.setAttribute("role", "img");
   }
   function place() {
     if (!moving) return;
@@ -186,6 +187,8 @@ const tools = (() => {
     });
     const path = svg("path", { class: "moved" });
     handles.replaceChildren(path, ...circles);
+    // a picture has no parts that are pressed
+    plan.setAttribute("role", "group");
     moving = { line, circles, path, isOpening, rail: host ? edits.lineOf(host.dataset.element) : line };
     place();
     circles[1].focus({ preventScroll: true });

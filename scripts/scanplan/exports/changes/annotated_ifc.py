@@ -14,7 +14,12 @@ Properties = Mapping[str, str | float | bool]
 """By name: names end in `_m` where their values are metres, which the model states in its unit."""
 
 
-def annotate_model(path: FilePath, name: str, values: Mapping[str, Properties]) -> str:
+def annotate_model(
+    path: FilePath,
+    name: str,
+    values: Mapping[str, Properties],
+    carried: Mapping[str, str] | None = None,
+) -> str:
     """Return the text of a model with a set of properties of some of its elements.
 
     Parameters
@@ -23,6 +28,8 @@ def annotate_model(path: FilePath, name: str, values: Mapping[str, Properties]) 
         Of the set.
     values : dict of str to dict
         By GlobalId.
+    carried : dict of str to str, optional
+        GlobalIds that elements bear in the copy, by those that they bear in the model.
 
     Returns
     -------
@@ -39,6 +46,9 @@ def annotate_model(path: FilePath, name: str, values: Mapping[str, Properties]) 
         scale_m = ifcopenshell.util.unit.calculate_unit_scale(model)
         for guid, properties in values.items():
             _add_set(model, model.by_guid(guid), name, properties, scale_m)
+        renamed = [(model.by_guid(guid), wanted) for guid, wanted in (carried or {}).items()]
+        for element, wanted in renamed:
+            element.GlobalId = wanted
         return model.to_string()
     except (RuntimeError, ifcopenshell.Error) as error:
         fault = f"cannot be read as IFC ({str(error).strip()[:120]})"

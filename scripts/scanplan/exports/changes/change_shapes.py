@@ -35,9 +35,9 @@ class DrawnChange:
 
 
 def list_drawn(compared: Comparison, tables: Sequence[str]) -> Iterator[DrawnChange]:
-    """Yield the likely changes, and what was not seen, of some tables, with their areas."""
+    """Yield what likely changed or swung, and what was not seen, of some tables, with areas."""
     for change in compared.changes:
-        if change.table in tables and (change.is_change or change.verdict == NOT_SEEN):
+        if change.table in tables and (change.is_told or change.verdict == NOT_SEEN):
             survey = compared.a if change.number_a >= 0 else compared.b
             area = _cover(change, survey)
             is_of_a = change.number_a >= 0

@@ -9,7 +9,7 @@ import shapely
 from scanplan.changes.change_table import summarise_tie, warn_of_others
 from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
-from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN
+from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, STATES
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
@@ -26,6 +26,7 @@ from scanplan.plan.floorplan import say_count
 
 _TAGGED = ("wall", "opening", "column")
 _STYLES = {GONE: "gone", NEW: "new", MOVED: "moved", NOT_SEEN: "unlooked"}
+_STYLES |= dict.fromkeys(STATES, "swung")
 
 
 def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
@@ -44,7 +45,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
     told = [
         Told(say_change(of.change), of.change.shape)
         for of in drawn
-        if of.change.table in _TAGGED and of.change.is_change
+        if of.change.table in _TAGGED and of.change.is_told
     ]
     ways = [
         Way(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 import shapely
 
-from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME
+from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES
 from scanplan.design.deviations import FAULTS, UNDECIDED, WITHIN
 from scanplan.exports.changes.annotated_ifc import Properties
 from scanplan.exports.data.model_topics import Topic
 from scanplan.types import Array, Columns
 
-_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, SAME, NOT_SEEN)
+_GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, *STATES, SAME, NOT_SEEN)
 """Of an element with several stretches the gravest verdict is stated, and the longest of it."""
 _OF_DESIGN = {"p": "probability", "shift_m": "deviation_m", "sigma_m": "standard_deviation_m"}
 _OF_DESIGN |= {"limit_m": "tolerance_m", "built_m2": "built_area"}
@@ -42,10 +42,45 @@ def gather_changes(columns: Columns, ids: Columns) -> dict[str, Properties]:
     ids : dict of str to (m,) array
         Those of `schemas.ELEMENT_IDS`, of the later survey.
     """
-    keys = zip(ids["kind"].tolist(), ids["number"].tolist(), strict=True)
-    known = dict(zip(keys, ids["global_id"].tolist(), strict=True))
+    known = _ids_by_number(ids)
     rows = zip(columns["element"].tolist(), columns["number_b"].tolist(), strict=True)
     return _gather(columns, [known.get(key, "") for key in rows], columns["likely"], _OF_CHANGE)
+
+
+def carry_ids(columns: Columns, earlier: Columns, later: Columns) -> dict[str, str]:
+    """Return the GlobalIds of elements of the later survey that were there before, to earlier ones.
+
+    Of walls that were parted or joined that keeps the id which has most of it in common.
+
+    Parameters
+    ----------
+    columns : dict of str to (n,) array
+        Those of `schemas.CHANGES`.
+    earlier, later : dict of str to (m,) array
+        Those of `schemas.ELEMENT_IDS`, of either survey.
+    """
+    ids_a, ids_b = (_ids_by_number(ids) for ids in (earlier, later))
+    shared: dict[tuple[str, str], float] = {}
+    is_both = (columns["number_a"] >= 0) & (columns["number_b"] >= 0)
+    for row in np.flatnonzero(is_both).tolist():
+        element = columns["element"][row]
+        new = ids_b.get((element, int(columns["number_b"][row])))
+        old = ids_a.get((element, int(columns["number_a"][row])))
+        if new and old:
+            pair = new, old
+            shared[pair] = shared.get(pair, 0.0) + _size(columns, row)
+    carried: dict[str, str] = {}
+    taken = set(ids_b.values())
+    for new, old in sorted(shared, key=lambda pair: (-shared[pair], pair)):
+        if new not in carried and old not in taken:
+            carried[new] = old
+            taken.add(old)
+    return carried
+
+
+def _ids_by_number(ids: Columns) -> dict[tuple[str, int], str]:
+    keys = zip(ids["kind"].tolist(), ids["number"].tolist(), strict=True)
+    return dict(zip(keys, ids["global_id"].tolist(), strict=True))
 
 
 def _gather(

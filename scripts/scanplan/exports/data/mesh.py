@@ -4,6 +4,7 @@ import json
 import math
 import struct
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any
 
@@ -28,6 +29,31 @@ class _Code(IntEnum):
     FLOAT = 5126
     ARRAY_BUFFER = 34962
     ELEMENT_ARRAY_BUFFER = 34963
+
+
+@dataclass(frozen=True)
+class Solid:
+    """An element of a plan as a body.
+
+    Attributes
+    ----------
+    kind : str
+        wall, opening or room.
+    number, row : int
+        Its number, and its row in its table.
+    name : str
+    colour : str
+        A key of `model_colours.COLOURS`.
+    triangles_m : (n, 3, 3) float
+        Its surface, facing outwards: x and y of the map frame, height above the floor, metres.
+    """
+
+    kind: str
+    number: int
+    row: int
+    name: str
+    colour: str
+    triangles_m: FloatArray
 
 
 class _Model:
@@ -130,28 +156,35 @@ def format_glb(plan: FloorPlan, ids: ElementIds, site: Site = NOWHERE) -> bytes:
     states its system and where its origin is in it: coordinates have single precision.
     """
     model = _Model(plan.name)
-    for row, body in enumerate(plan.bodies):
-        state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
-        parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
-        colour = colour_of(plan.walls, row, state)
-        name = f"Wall {plan.walls['wall'][row]}"
-        about = _about(ids["wall"][row], plan.walls, row)
-        model.add(name, about, colour, np.concatenate(parts))
-    lines_m = floorplan.centrelines_m(plan.openings)
-    leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
-    for row, kind in enumerate(plan.openings["type"]):
-        if kind in COLOURS:
-            name = f"{kind.capitalize()} {plan.openings['opening'][row]}"
-            leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
-            colour = colour_of(plan.openings, row, kind)
-            model.add(name, _about(ids["opening"][row], plan.openings, row), colour, leaf)
-    for row, area in enumerate(plan.areas):
-        about = _about(ids["room"][row], plan.rooms, row)
-        model.add(plan.room_names[row], about, "slab", _flat(area, 0.0))
+    columns = {"wall": plan.walls, "opening": plan.openings, "room": plan.rooms}
+    for solid in list_solids(plan):
+        about = _about(ids[solid.kind][solid.row], columns[solid.kind], solid.row)
+        model.add(solid.name, about, solid.colour, solid.triangles_m)
     if site.is_placed:
         floor_m, _ = plan.storey_m
         model.place(site, floor_m)
     return model.pack()
+
+
+def list_solids(plan: FloorPlan) -> Iterator[Solid]:
+    """Yield walls with their openings, doors, windows, panes and rooms' floors as bodies."""
+    for row, body in enumerate(plan.bodies):
+        state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
+        parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
+        colour = colour_of(plan.walls, row, state)
+        number = plan.walls["wall"][row].item()
+        yield Solid("wall", number, row, f"Wall {number}", colour, np.concatenate(parts))
+    lines_m = floorplan.centrelines_m(plan.openings)
+    leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
+    for row, kind in enumerate(plan.openings["type"]):
+        if kind in COLOURS:
+            number = plan.openings["opening"][row].item()
+            leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
+            name = f"{kind.capitalize()} {number}"
+            yield Solid("opening", number, row, name, colour_of(plan.openings, row, kind), leaf)
+    for row, area in enumerate(plan.areas):
+        number = plan.rooms["room"][row].item()
+        yield Solid("room", number, row, plan.room_names[row], "slab", _flat(area, 0.0))
 
 
 def _about(global_id: str, columns: Columns, row: int) -> dict[str, str]:

@@ -13,10 +13,10 @@ from scanplan.exports.data.openplan_walls import DrawnWall, draw_walls, list_aro
 from scanplan.exports.drafting.leaves import find_swings
 from scanplan.exports.model_origin import ModelOrigin
 from scanplan.exports.opening_extents import vertical_extent_m
-from scanplan.exports.sheet.symbols import WIDEST_LEAF_M
 from scanplan.geometry.polygons import long_axis_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.tolerances import WIDEST_LEAF_M
 from scanplan.store.schemas import COLUMN, LEAF
 
 PER_M = 100.0
@@ -169,8 +169,9 @@ def _say_swing(plan: FloorPlan, row: int, item: Item, swing: Any) -> Item:
     Its door is hinged at the end of its wall's way if it is `left`, and opens to the right of that
     way, seen with y upwards, if it is not flipped.
     """
-    if swing is None:
-        return {"swingDirection": "left", "flipSide": False}
+    if swing is None or swing.block.startswith("SLIDING"):
+        usual = {"swingDirection": "left", "flipSide": False}
+        return usual if swing is None else usual | {"type": "sliding"}
     line_m = floorplan.centrelines_m(plan.openings)[row]
     host_m = floorplan.centrelines_m(plan.walls)[plan.hosts[row]]
     way = line_m[1] - line_m[0]

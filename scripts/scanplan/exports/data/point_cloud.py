@@ -10,15 +10,20 @@ import numpy as np
 from laspy.vlrs.known import GeoKeyDirectoryVlr
 
 from scanplan.exports.model_origin import NOWHERE, Site
-from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FilePath, FloatArray, IntArray
+
+ScanPoints = tuple[int, FloatArray, Array | None]
+"""scan_id, points (n, 3) float32 in metres, map frame, and their colours (n, 3) uint16, if any."""
 
 
 def write_laz(
     path: FilePath,
-    scans: Iterable[tuple[int, FloatArray]],
+    scans: Iterable[ScanPoints],
     cell_m: float,
     t_ns: int,
     site: Site = NOWHERE,
+    *,
+    coloured: bool = False,
 ) -> tuple[int, int]:
     """Write the points of scans, thinned.
 
@@ -26,14 +31,16 @@ def write_laz(
     ----------
     path : path-like
         Where there is no file yet.
-    scans : iterable of (int, (n, 3) float32)
-        scan_id and points, metres in the map frame.
+    scans : iterable of ScanPoints
+        Read one at a time.
     cell_m : float, >= 0
         Of all points in a cube of this edge the first is kept; all are at 0.
     t_ns : int
         When the survey was made, Unix time: the day that the file says it was made.
     site : Site
         Where the map lies.
+    coloured : bool
+        Whether points have colours; those of a scan without any are black.
 
     Returns
     -------
@@ -41,34 +48,41 @@ def write_laz(
 
     Notes
     -----
-    LAS 1.4, point format 6, with the extra dimension `scan_id`. Coordinates are rounded to a
-    millimetre; they are the map frame's, no system on earth is stated, but where the map lies in
-    one: then they are its, of point format 1, which states it by its number.
+    LAS 1.4, point format 6 (with colours 7), with the extra dimension `scan_id`. Coordinates are
+    rounded to a millimetre; they are the map frame's, no system on earth is stated, but where the
+    map lies in one: then they are its, of point format 1 (3), which states it by its number.
     """
     cells = _SeenCells(cell_m)
     n_points = n_kept = 0
     with (
         Path(path).open("w+b") as stream,
         laspy.LasWriter(
-            stream, _header(t_ns, site), do_compress=True, laz_backend=laspy.LazBackend.Lazrs
+            stream,
+            _header(t_ns, site, coloured=coloured),
+            do_compress=True,
+            laz_backend=laspy.LazBackend.Lazrs,
         ) as file,
     ):
-        for scan_id, xyz_m in scans:
-            kept_m = xyz_m[cells.add(xyz_m)]
+        for scan_id, xyz_m, rgb in scans:
+            is_kept = cells.add(xyz_m)
+            kept_m = xyz_m[is_kept]
             record = laspy.ScaleAwarePointRecord.zeros(len(kept_m), header=file.header)
             record.x, record.y = site.place(kept_m[:, :2].astype(float)).T
             record.z = kept_m[:, 2].astype(float) + (site.height_m if site.is_placed else 0.0)
             record["scan_id"] = np.full(len(kept_m), scan_id, np.uint32)
             record["return_number"] = record["number_of_returns"] = np.ones(len(kept_m), np.uint8)
+            if rgb is not None and coloured:
+                record["red"], record["green"], record["blue"] = rgb[is_kept].T
             file.write_points(record)
             n_points += len(xyz_m)
             n_kept += len(kept_m)
     return n_points, n_kept
 
 
-def _header(t_ns: int, site: Site) -> laspy.LasHeader:
+def _header(t_ns: int, site: Site, *, coloured: bool) -> laspy.LasHeader:
     # from format 6 on a system is stated as text, which only its registry has
-    header = laspy.LasHeader(point_format=1 if site.is_placed else 6, version="1.4")
+    plain, with_colours = (1, 3) if site.is_placed else (6, 7)
+    header = laspy.LasHeader(point_format=with_colours if coloured else plain, version="1.4")
     if site.epsg is not None:
         header.vlrs.append(_state_system(site.epsg))
     header.add_extra_dim(laspy.ExtraBytesParams("scan_id", "u4", "scan of the recording"))

@@ -1,14 +1,18 @@
-"""Rooms and ways in the words of IMDF (Apple, OGC 20-094), as layers of a GeoPackage."""
+"""Rooms and ways in the words of IMDF (Apple, OGC 20-094): layers of a GeoPackage, GeoJSON."""
 
 import uuid
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
+from scanplan.exports import geojson
 from scanplan.exports.data.element_tables import Rows
 from scanplan.exports.data.geopackage import Layer
 from scanplan.exports.data.room_graph import WHEELCHAIR_M
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -16,14 +20,25 @@ from scanplan.plan.floorplan import FloorPlan
 _NAMESPACE = uuid.UUID("0a1de2c4-7f39-4c55-8a0e-6d2b9c7e1f38")  # any, and always the same
 _DOORS = {"door": "unspecified", "passage": "open"}
 """IMDF's types of doors: how a leaf moves is in the building model."""
+_CATEGORIES = frozenset(
+    (
+        *("auditorium", "classroom", "conferenceroom", "elevator", "escalator", "foodservice"),
+        *("kitchen", "laboratory", "library", "lobby", "lounge", "nonpublic", "office", "parking"),
+        *("phoneroom", "prayerroom", "ramp", "recreation", "restroom", "room", "shower"),
+        *("smokingarea", "stairs", "steps", "storage", "terrace", "theater", "unspecified"),
+        *("waitingroom", "walkway"),
+    )
+)
+"""Those of IMDF's categories of units that are rooms of most buildings."""
 
 
 def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
     """Return one level, its units and its openings, with IMDF's names of properties.
 
-    Rooms are units of category `room`, doors and passages openings of category `pedestrian`, those
-    at least 0.9 m wide with accessibility `wheelchair`. The level is what rooms and walls cover.
-    Ids follow from GlobalIds, which stand beside them.
+    Rooms are units, of the category that a person gave as their use, else `room`; doors and
+    passages openings of category `pedestrian`, those at least 0.9 m wide with accessibility
+    `wheelchair`. The level is what rooms and walls cover. Ids follow from GlobalIds, which stand
+    beside them.
 
     Parameters
     ----------
@@ -38,7 +53,7 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
     units: Rows = {
         "id": [_identify(global_id) for global_id in rooms["global_id"]],
         "feature_type": ["unit"] * len(plan.areas),
-        "category": ["room"] * len(plan.areas),
+        "category": [_categorise(use) for use in plan.rooms["use"]],
         "level_id": [level_id] * len(plan.areas),
         "name": rooms["name"],
         "global_id": rooms["global_id"],
@@ -66,6 +81,39 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
         "imdf_unit": Layer("POLYGON", plan.areas, units),
         "imdf_opening": Layer("LINESTRING", lines, doors),
     }
+
+
+def format_imdf(plan: FloorPlan, rows: Mapping[str, Rows], site: Site = NOWHERE) -> str:
+    """Return the same features as the text of a FeatureCollection, placed as `plan.geojson` is.
+
+    Parameters
+    ----------
+    rows : dict
+        See `element_tables.tabulate_elements`.
+    """
+    features = [
+        _make_feature(shape, {name: values[row] for name, values in layer.rows.items()})
+        for layer in imdf_layers(plan, rows).values()
+        for row, shape in enumerate(site.place_shapes(layer.shapes))
+    ]
+    return geojson.format_collection(plan.name, features, **geojson.state_system(site))
+
+
+def _make_feature(shape: BaseGeometry, values: dict[str, Any]) -> geojson.Feature:
+    """Return a feature as IMDF has it: its type beside its properties, names by language."""
+    own = {"id": values.pop("id"), "feature_type": values.pop("feature_type")}
+    if "name" in values:
+        values["name"] = {"en": values["name"]}
+    if "door_type" in values:
+        values["door"] = {"type": values.pop("door_type"), "automatic": False, "material": None}
+        values["accessibility"] = [values["accessibility"]] if values["accessibility"] else None
+    made = geojson.make_feature(own["id"], shape, values)
+    return {**made, **own}
+
+
+def _categorise(use: str) -> str:
+    """Return IMDF's category of a unit for what a person calls its use; `room` of others."""
+    return use if use in _CATEGORIES else "room"
 
 
 def _identify(*words: str) -> str:

@@ -7,13 +7,12 @@ import shapely
 
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.marks import Symbol
-from scanplan.exports.sheet.symbols import WIDEST_LEAF_M
 from scanplan.geometry.polygons import long_axis_m
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.tolerances import HINGE_M, WIDEST_LEAF_M
 from scanplan.store import schemas
-from scanplan.types import Columns, FloatArray
+from scanplan.types import BoolArray, Columns, FloatArray
 
-_HINGE_M = 0.2  # from a jamb to the end of its leaf: what a leaf is thick, and its end is off by
 _LEAST_SHARE = 0.5  # of a leaf's length that is seen beside a door: less is something else
 _LEAST_SINE = 0.25  # a leaf turned less than 15 degrees is shut, and does not say to which side
 
@@ -25,7 +24,8 @@ class Swing:
     Attributes
     ----------
     block : str
-        Of `symbols.BLOCKS`: hinged at the start or the end of its line, or with two leaves.
+        Of `symbols.BLOCKS`: hinged at the start or the end of its line, with two leaves, or such as
+        slide.
     is_reversed : bool
         Whether its line is to run the other way, so that it opens to the left of it.
     """
@@ -35,40 +35,59 @@ class Swing:
 
 
 def find_swings(plan: FloorPlan) -> dict[int, Swing]:
-    """Return how doors open, by their rows, where a leaf was seen standing open."""
-    leaves_m = find_leaves(plan.furniture)
+    """Return how doors open, by their rows, where a leaf stands open, or a person said so."""
+    leaves = find_leaves(plan.furniture)
     found: dict[int, Swing] = {}
     for row, symbol in enumerate(content.list_symbols(plan)):
-        drawn = draw_swing(symbol, leaves_m) if symbol.kind == "door" else symbol
+        drawn = draw_swing(symbol, leaves) if symbol.kind == "door" else symbol
         if drawn.kind == "swing":
             before_m, after_m = (ends[1] - ends[0] for ends in (symbol.ends_m, drawn.ends_m))
             found[row] = Swing(drawn.block, bool(before_m @ after_m < 0))
     return found
 
 
-def find_leaves(furniture: Columns) -> FloatArray:
-    """Return the middle lines (k, 2, 2) of leaves among what stands about, map frame."""
-    kinds = np.asarray(furniture["kind"], str)
-    outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[kinds == schemas.LEAF])
-    return np.array([long_axis_m(outline) for outline in outlines]).reshape(-1, 2, 2)
+@dataclass(frozen=True, eq=False)
+class Leaves:
+    """Leaves among what stands about.
+
+    Attributes
+    ----------
+    lines_m : (k, 2, 2) float
+        Their middle lines, map frame.
+    is_sliding : (k,) bool
+        Which of them a person says slide.
+    """
+
+    lines_m: FloatArray
+    is_sliding: BoolArray
 
 
-def draw_swing(door: Symbol, leaves_m: FloatArray) -> Symbol:
+def find_leaves(furniture: Columns) -> Leaves:
+    """Return the leaves among what stands about."""
+    rows = np.flatnonzero(np.asarray(furniture["kind"], str) == schemas.LEAF)
+    outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[rows])
+    lines_m = np.array([long_axis_m(outline) for outline in outlines]).reshape(-1, 2, 2)
+    return Leaves(lines_m, np.asarray(furniture["named"], str)[rows] == schemas.SLIDING)
+
+
+def draw_swing(door: Symbol, leaves: Leaves) -> Symbol:
     """Return a door with its swing as its leaf was seen, or as a plain doorway.
 
     Parameters
     ----------
     door : Symbol
         In the middle of its wall.
-    leaves_m : (k, 2, 2) float
     """
+    middles_m = leaves.lines_m[leaves.is_sliding].mean(axis=1)
+    if (np.hypot(*(middles_m - door.ends_m.mean(axis=0)).T) <= HINGE_M).any():
+        return replace(door, kind="swing", block="SLIDING")
     way = (door.ends_m[1] - door.ends_m[0]) / door.width_m
     left = np.array([-way[1], way[0]])
     is_double = door.width_m > WIDEST_LEAF_M
     leaf_m = door.width_m / (2 if is_double else 1)
     found = [
         (hinge, np.sign(side))
-        for ends_m in leaves_m
+        for ends_m in leaves.lines_m[~leaves.is_sliding]
         for hinge, side in [_read_leaf(door.ends_m, ends_m, left, leaf_m)]
         if hinge >= 0
     ]
@@ -95,5 +114,5 @@ def _read_leaf(
     along_m = ends_m[1 - end] - ends_m[end]
     length_m = float(np.hypot(*along_m))
     side_m = float(along_m @ left)
-    is_leaf = apart_m[hinge, end] <= _HINGE_M and length_m >= _LEAST_SHARE * leaf_m
+    is_leaf = apart_m[hinge, end] <= HINGE_M and length_m >= _LEAST_SHARE * leaf_m
     return (int(hinge), side_m) if is_leaf and abs(side_m) > _LEAST_SINE * length_m else (-1, 0.0)

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.exports.drafting.fixtures import draw_fixtures
 from scanplan.exports.drafting.leaves import draw_swing, find_leaves
 from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
 from scanplan.exports.drafting.scraps import BARE, find_nowhere
@@ -45,8 +46,8 @@ def compose_presentation(
     """Compose the sheet of a regular plan.
 
     Walls are solid, also where their thickness is assumed; doors swing where a leaf was seen.
-    Rooms and openings alone are dimensioned, between surfaces that were measured; neither furniture
-    nor doubts are drawn.
+    Rooms and openings alone are dimensioned, between surfaces that were measured; of furniture
+    what a person has named is drawn, and no doubts are.
 
     Parameters
     ----------
@@ -126,6 +127,7 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
     outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)[is_column])
     for number, outline in zip(plan.furniture["furniture"][is_column], outlines, strict=True):
         yield content.draw_area("poche", outline, f"column-{number}", "column")
+    yield from draw_fixtures(plan)
 
 
 def _find_backs(plan: FloorPlan) -> Array:
@@ -147,7 +149,7 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
 
     None is a pane in no wall that bounds no room, nor what has no leaf or pane and leads nowhere.
     """
-    leaves_m = find_leaves(plan.furniture)
+    leaves = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
     near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, _BESIDE_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
@@ -163,7 +165,7 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
         if is_left_out:
             continue
         if symbol.kind == "door":
-            yield draw_swing(symbol, leaves_m)
+            yield draw_swing(symbol, leaves)
         else:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
 
@@ -227,6 +229,9 @@ def _list_totals(plan: FloorPlan, locale: Locale) -> list[str]:
         if is_of.any():
             total = f"{about}{locale.area(float(areas_m2[is_of].sum()))} net"
             sentences.append(f"{say_count(int(is_of.sum()), noun)}, {total}.")
+    uses = np.asarray(plan.rooms["use"], str)
+    totals = {use: float(areas_m2[uses == use].sum()) for use in sorted({*uses.tolist()} - {""})}
+    sentences += [f"{clean_text(use)}: {locale.area(area)}" for use, area in totals.items()]
     for kind in ("door", "window"):
         sizes, counts = np.unique(np.round(widths_m[kinds == kind], 1), return_counts=True)
         listed = ", ".join(

@@ -7,6 +7,16 @@ from ifcopenshell import entity_instance
 from scanplan.exports.ifc_elements.storey_plan import EVIDENCE, StoreyPlan, known
 from scanplan.exports.ifc_model import IfcModel
 
+_CLASSES = {
+    "toilet": ("IfcSanitaryTerminal", "TOILETPAN"),
+    "basin": ("IfcSanitaryTerminal", "WASHHANDBASIN"),
+    "bath": ("IfcSanitaryTerminal", "BATH"),
+    "shower": ("IfcSanitaryTerminal", "SHOWER"),
+    "sink": ("IfcSanitaryTerminal", "SINK"),
+    "cooker": ("IfcElectricAppliance", "ELECTRICCOOKER"),
+    "stairs": ("IfcStair", "NOTDEFINED"),
+}
+"""What pieces are that a person has named, with their predefined types."""
 _LEAST_M = 0.05  # of a piece whose heights were not seen: a plane scan shows one of them
 
 
@@ -22,13 +32,15 @@ def _add_piece(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     outline = shapely.from_wkb(columns["geometry"][row])
     number = str(columns["furniture"][row])
     place = outline.centroid
+    named = str(columns["named"][row])
+    ifc_class, predefined = _CLASSES.get(named, ("IfcFurniture", "NOTDEFINED"))
     piece = model.root(
-        "IfcFurniture",
+        ifc_class,
         (round(place.x, 2), round(place.y, 2)),
-        Name=f"Furniture {number}",
+        Name=f"{(named or 'furniture').capitalize()} {number}",
         Tag=number,
         ObjectPlacement=model.placement((0, 0, 0), (1, 0), model.storey.ObjectPlacement),
-        PredefinedType="NOTDEFINED",
+        PredefinedType=predefined,
     )
     top_m = known(float(columns["z_max_m"][row]) - floor_m)
     high_m = max(_LEAST_M, 0.0 if top_m is None else top_m)

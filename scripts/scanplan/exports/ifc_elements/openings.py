@@ -33,6 +33,8 @@ _OPERATIONS = {
     "SWING-LEFT": "SINGLE_SWING_LEFT",
     "SWING-RIGHT": "SINGLE_SWING_RIGHT",
     "SWING-2": "DOUBLE_DOOR_SINGLE_SWING",
+    # to which side is not known
+    "SLIDING": "USERDEFINED",
 }
 """IFC's words for how doors open, by the block that they are drawn with."""
 
@@ -104,7 +106,7 @@ def _add_opening(
     if model.is_editable:
         attributes["PredefinedType"] = "DOOR" if kind == "door" else "WINDOW"
     if swing is not None:
-        attributes["OperationType"] = _OPERATIONS[swing.block]
+        attributes |= _state_operation(_OPERATIONS[swing.block])
     thickness_m = float(plan.openings["thickness_m"][row])
     if np.isnan(thickness_m):
         thickness_m = plan.assumed_thickness_m
@@ -117,6 +119,12 @@ def _add_opening(
         model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
     _describe_filling(model, storey, row, filling)
     return Opening(void, filling)
+
+
+def _state_operation(operation: str) -> dict[str, str]:
+    """Return the attributes that say how a door, or a type of doors, opens."""
+    own = {"UserDefinedOperationType": "SLIDING"} if operation == "USERDEFINED" else {}
+    return {"OperationType": operation, **own}
 
 
 def _name_opening(storey: StoreyPlan, row: int) -> str:
@@ -173,7 +181,7 @@ def _list_curves(
 ) -> list[entity_instance]:
     """Return what a door or window is drawn with in plan, in its own frame."""
     # hinged in the side of the wall that it opens to
-    y_m = 0.0 if swing is None else thickness_m / 2
+    y_m = 0.0 if swing is None or swing.block == "SLIDING" else thickness_m / 2
     ends_m = np.array([[0.0, y_m], [width_m, y_m]])
     symbol = Symbol(_DRAWN_AS.get(kind, kind), ends_m, thickness_m, "", "")
     if swing is not None:
@@ -252,11 +260,9 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
         of_doors = kind == "door"
         name = listed or f"{kind.capitalize()} {100 * width_m:.0f} cm"
         if operation != "NOTDEFINED":
-            name += ", " + operation.lower().replace("_", " ")
-        attributes = {
-            "PredefinedType": "DOOR" if of_doors else "WINDOW",
-            "OperationType" if of_doors else "PartitioningType": operation,
-        }
+            name += ", " + operation.lower().replace("_", " ").replace("userdefined", "sliding")
+        attributes = {"PredefinedType": "DOOR" if of_doors else "WINDOW"}
+        attributes |= _state_operation(operation) if of_doors else {"PartitioningType": operation}
         product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)
         system, code = storey.find_code(_LISTED_AS.get(kind, "windows"), listed)
         if code:

@@ -105,13 +105,16 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
         storey.ids["room"][row],
         Name=str(columns["room"][row]),
         LongName=plan.room_names[row],
-        ObjectPlacement=_on_floor(model),
         ObjectType=str(columns["use"][row]) or None,
+        ObjectPlacement=_on_floor(model),
         CompositionType="ELEMENT",
         PredefinedType="INTERNAL",
     )
     _build_layer(model, space, area, (0.0, height_m), colour_of(columns, row, "space"))
     model.describe(space, "Pset_SpaceCommon", {"IsExternal": ("IfcBoolean", False)})
+    if use := str(columns["use"][row]):
+        occupied = {"OccupancyType": ("IfcLabel", use)}
+        model.describe(space, "Pset_SpaceOccupancyRequirements", occupied)
     properties = {
         "Closed": ("IfcBoolean", bool(columns["closed"][row])),
         "HeightFrom": ("IfcLabel", HEIGHTS[plan.height_from]),

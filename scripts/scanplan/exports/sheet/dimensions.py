@@ -232,7 +232,10 @@ def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Can
     above = np.array([-along[1], along[0]])
     middle = line.mean(axis=0)
     drawn = (line,)
-    for cost, away in ((0, 1.0), (1, -1.0), (3, 2.6), (4, -2.6)):
+    length_mm = float(np.hypot(*(line[1] - line[0])))
+    # what is wider than its line would lie on the strokes at the line's ends
+    near = 0 if measure_width_mm(text, Letters.SMALL) <= length_mm - Paper.TICK else 4
+    for cost, away in ((near, 1.0), (1 + near, -1.0), (3, 2.6), (4, -2.6)):
         offset = away * 0.95 * Letters.SMALL
         place = middle + offset * above
         word = Word("dimension", text, place, Letters.SMALL, turn_deg)

@@ -6,10 +6,8 @@ import numpy as np
 
 from scanplan.exports.sheet.lettering import rotation
 from scanplan.exports.sheet.marks import Symbol
+from scanplan.plan.tolerances import WIDEST_LEAF_M
 from scanplan.types import FloatArray
-
-WIDEST_LEAF_M = 1.25
-"""A wider door has two leaves (DIN 18101 ends there)."""
 
 
 def _leaf(hinge: float, tip: float) -> list[FloatArray]:
@@ -34,6 +32,7 @@ def _swing(hinge: float, tip: float) -> list[FloatArray]:
 
 
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
+_MIDDLE = [np.array([[0, 0, 0], [1, 0, 0]])]
 BLOCKS = {
     "DOOR-1": _leaf(0.0, 1.0),
     "DOOR-2": [*_leaf(0.0, 0.5), *_leaf(1.0, 0.5)],
@@ -45,8 +44,12 @@ BLOCKS = {
     "SWING-LEFT": _swing(0.0, 1.0),
     "SWING-RIGHT": _swing(1.0, 0.0),
     "SWING-2": [*_swing(0.0, 0.5), *_swing(1.0, 0.5)],
-    "DOORWAY": _SIDES,
-    "PARTING": [np.array([[0, 0, 0], [1, 0, 0]])],
+    # two panels that overlap in the middle, each on its track
+    "SLIDING": [
+        np.array([[a, y, 0], [b, y, 0]]) for a, b, y in ((0, 0.55, 0.15), (0.45, 1, -0.15))
+    ],
+    "DOORWAY": _MIDDLE,
+    "PARTING": _MIDDLE,
     "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.3, 0.3)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
 }
@@ -62,7 +65,8 @@ def choose_block(symbol: Symbol) -> str:
 
 def block_scales(symbol: Symbol) -> tuple[float, float]:
     """Return the scales of its block along its wall and across; equal ones keep arcs round."""
-    across_m = symbol.width_m if symbol.kind in ("door", "swing") else symbol.thickness_m
+    is_round = symbol.kind in ("door", "swing") and symbol.block != "SLIDING"
+    across_m = symbol.width_m if is_round else symbol.thickness_m
     return symbol.width_m, across_m
 
 

@@ -10,6 +10,7 @@ from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet.accuracy import SensorErrors, state_accuracy
 from scanplan.exports.sheet.lettering import (
     clean_text,
+    measure_width_mm,
     rotation,
     shorten_text,
     wrap_text,
@@ -23,7 +24,7 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
-from scanplan.validation.doubts import list_to_verify
+from scanplan.validation.doubts import list_doubts
 from scanplan.validation.verdict import judge_plan
 
 TITLE_TAG = "title:"
@@ -116,7 +117,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
     north = "north unknown" if facts.north_deg is None else "north as drawn"
-    n_doubts = len(list_to_verify(plan))
+    n_doubts = len(list_doubts(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
@@ -219,7 +220,8 @@ def draw_legend(
     for kind, x, y in rows:
         low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
         if kind in (*OPENINGS, "parting", "doorway"):
-            paths, closed = _sample_symbol(kind, x + Paper.SAMPLE / 2, y), False
+            middle = x + (Paper.GAP + Paper.SAMPLE) / 2
+            paths, closed = _sample_symbol(kind, middle, y), False
         elif STYLES[kind].fill != "none" or kind == "verify":
             paths, closed = [_box(x + Paper.GAP, low, x + Paper.SAMPLE, high)], True
         else:
@@ -255,26 +257,52 @@ def draw_room_table(
     of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
     heads = ["No.", "Room", f"Area{of_area}", f"Perim.{of_length}", f"Height{of_length}"]
     names = [locale.say(head) for head in heads]
-    # where each begins, or ends from the third on, millimetres
-    ends = [0.0, 6.0, 30.0, 42.5, 55.5]
+    sizes = [_list_sizes(stamp, locale) for stamp in stamps]
+    ends = _end_columns(names, sizes)
+    name_mm = _name_width_mm(ends, sizes)
     yield from _heads(slots, names, ends)
-    for stamp, (x, y) in zip(stamps, _row_places(slots), strict=True):
+    for stamp, of_room, (x, y) in zip(stamps, sizes, _row_places(slots), strict=True):
         facts = stamp.facts
-        sizes = [
-            facts[tag].removesuffix(unit).replace("about ", "~")
-            for tag, unit in (("AREA", of_area), ("PERIMETER", of_length))
-        ]
-        height = facts["HEIGHT"].removesuffix(of_length).replace("at least", "min.")
-        height = locale.say(height.replace("not seen", "-"))
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
-        name = shorten_text(facts["NAME"], Letters.SMALL, 15.0 - 2.0 * len(marks)) + marks
-        texts = [facts["NUMBER"], name, *sizes, height]
+        name = shorten_text(facts["NAME"], Letters.SMALL, name_mm - 2.0 * len(marks)) + marks
+        texts = [facts["NUMBER"], name, *of_room]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
             yield _word(kind, text, x + Paper.GAP + end, y, Letters.SMALL, float(column > 1))
         yield _rule(
             x + Paper.GAP, y - Paper.ROW / 2, x + Paper.COLUMN - Paper.GAP, y - Paper.ROW / 2
         )
+
+
+def _list_sizes(stamp: Stamp, locale: Locale) -> list[str]:
+    """Return area, perimeter and height of a room without their units, as short as can be."""
+    of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
+    facts = stamp.facts
+    sizes = [
+        facts[tag].removesuffix(unit).replace("about ", "~")
+        for tag, unit in (("AREA", of_area), ("PERIMETER", of_length))
+    ]
+    height = facts["HEIGHT"].removesuffix(of_length).replace("at least", "min.")
+    return [*sizes, locale.say(height.replace("not seen", "-"))]
+
+
+def _end_columns(heads: Sequence[str], sizes: Sequence[Sequence[str]]) -> list[float]:
+    """Return where columns of the table of rooms begin, or end from the third on, millimetres.
+
+    Those of sizes end at the right, each as wide as what stands in it.
+    """
+    ends = [Paper.COLUMN - 4.5 * Paper.GAP]
+    for column in (4, 3):
+        texts = [heads[column], *(of_room[column - 2] for of_room in sizes)]
+        width = max(measure_width_mm(text, Letters.SMALL) for text in texts)
+        ends.insert(0, ends[0] - width - 2 * Paper.GAP)
+    return [0.0, 6.0, *ends]
+
+
+def _name_width_mm(ends: Sequence[float], sizes: Sequence[Sequence[str]]) -> float:
+    """Return how wide a name may be: as far as where the areas begin."""
+    widths = [measure_width_mm(of_room[0], Letters.SMALL) for of_room in sizes]
+    return ends[2] - max(widths, default=0.0) - Paper.GAP - ends[1]
 
 
 def draw_scale_bar(page: Page, slot: Slot, north_deg: float | None = None) -> Iterator[Mark | Word]:

@@ -8,7 +8,7 @@ import shapely
 
 from scanplan.errors import StageError
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added, changed, outlines, things
+from scanplan.plan.corrections import added, changed, named, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
 from scanplan.store import schemas
@@ -179,7 +179,10 @@ def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
 def _change_thing(rows: PlanRows, thing: Row, correction: Correction) -> None:
     if correction.outline_m is not None:
         thing |= things.draw_columns(shapely.Polygon(correction.outline_m))
-    thing["kind"] = correction.kind or thing["kind"]
+    if correction.kind in schemas.FIXTURES:
+        thing["named"] = correction.kind
+    elif correction.kind:
+        thing |= {"kind": correction.kind, "named": ""}
 
 
 def _check_lengths(rows: PlanRows, taped: Sequence[Correction], outcome: Outcome) -> None:
@@ -253,7 +256,10 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
     if correction.element in ("wall", "furniture"):
         _check_near(rows, correction, line_m)
     if correction.element == "furniture":
-        things.add_thing(rows, shapely.Polygon(line_m), correction.kind or schemas.PIECE)
+        is_named = correction.kind in schemas.FIXTURES
+        kind = schemas.PIECE if is_named else correction.kind or schemas.PIECE
+        things.add_thing(rows, shapely.Polygon(line_m), kind)
+        rows.furniture[-1]["named"] = correction.kind if is_named else ""
         outcome.n_applied += 1
         return
     if correction.element == "wall":
@@ -270,10 +276,8 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
         raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
     added.add_opening(rows, wall, line_m, correction.kind, said)
-    if correction.opens_m is not None and (
-        fault := things.hang_leaf(rows, rows.openings[-1], np.array(correction.opens_m))
-    ):
-        outcome.told.append(f"{correction.entry}: {fault}")
+    if fault := named.hang_leaf(rows, rows.openings[-1], correction):
+        raise StageError(f"{correction.entry}: the opening {fault}")
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
     rows.openings[-1] |= {name: of for name, of in heights_m.items() if of is not None}
     outcome.n_applied += 1

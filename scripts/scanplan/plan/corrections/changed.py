@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added, things
+from scanplan.plan.corrections import added, named, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import Correction
 from scanplan.store import schemas
@@ -73,9 +73,7 @@ def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str 
     opening["type"] = correction.kind or opening["type"]
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
     opening |= {name: value for name, value in heights_m.items() if value is not None}
-    if correction.opens_m is None:
-        return None
-    return things.hang_leaf(rows, opening, np.array(correction.opens_m))
+    return named.hang_leaf(rows, opening, correction)
 
 
 def keep_face(rows: PlanRows, face: Row, said: str) -> None:

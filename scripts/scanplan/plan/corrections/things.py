@@ -1,4 +1,4 @@
-"""What a person says stands in rooms: furniture, columns, leaves of doors; and settled rooms."""
+"""What a person says stands in rooms: furniture and columns; settled rooms, and tapes."""
 
 import numpy as np
 import shapely
@@ -10,16 +10,19 @@ from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
 from scanplan.types import FloatArray
 
-_LEAF_M = 0.04  # ASSUME of a leaf, usual
 _BESIDE_M = 0.5  # from a room's outline to the lines of its walls: of a thick wall
 
 
 def find_thing(rows: PlanRows, place: shapely.Point) -> Row | None:
-    """Return what stands where a place is, or nearest to it within reach; None of nothing."""
-    grounds = shapely.from_wkb(np.array([row["geometry"] for row in rows.furniture], object))
+    """Return what stands where a place is, or nearest to it within reach; None of nothing.
+
+    Leaves go with their doors.
+    """
+    standing = [row for row in rows.furniture if row["kind"] != schemas.LEAF]
+    grounds = shapely.from_wkb(np.array([row["geometry"] for row in standing], object))
     far_m = shapely.distance(grounds, place)
     nearest = int(np.argmin(far_m)) if len(far_m) else -1
-    return rows.furniture[nearest] if len(far_m) and far_m[nearest] <= added.REACH_M else None
+    return standing[nearest] if len(far_m) and far_m[nearest] <= added.REACH_M else None
 
 
 def add_thing(rows: PlanRows, ground: shapely.Polygon, kind: str) -> None:
@@ -34,33 +37,6 @@ def add_thing(rows: PlanRows, ground: shapely.Polygon, kind: str) -> None:
 def draw_columns(ground: shapely.Polygon) -> Row:
     """Return the columns of the ground that a thing covers."""
     return {"area_m2": ground.area, "geometry": shapely.to_wkb(ground)}
-
-
-def hang_leaf(rows: PlanRows, door: Row, opens_m: FloatArray) -> str | None:
-    """Let the leaf of a door stand open, with its free end near a place (2,).
-
-    It hangs at the jamb that is nearer to the place, and stands square to the wall on that side;
-    leaves that were seen at the door go.
-
-    Returns
-    -------
-    str or None
-        Why it was not done.
-    """
-    if door["type"] != "door":
-        return f"is a {door['type']}, which has no leaf; call it a door"
-    jambs_m = added.ends_of(door)
-    hinge = int(np.argmin(np.hypot(*(jambs_m - opens_m).T)))
-    way_m = jambs_m[1] - jambs_m[0]
-    width_m = float(np.hypot(*way_m))
-    left = np.array([-way_m[1], way_m[0]]) / width_m
-    side = 1.0 if (opens_m - jambs_m[0]) @ left >= 0 else -1.0
-    around = overlays.buffer_shapes(shapely.LineString(jambs_m), added.REACH_M)
-    rows.furniture = [row for row in rows.furniture if not _is_leaf_of(row, around)]
-    leaf_m = np.stack([jambs_m[hinge], jambs_m[hinge] + side * width_m * left])
-    (ground,) = floorplan.buffer_lines(leaf_m[None], np.array([_LEAF_M / 2]))
-    add_thing(rows, ground, schemas.LEAF)
-    return None
 
 
 def settle_room(rows: PlanRows, room: Row, said: str) -> None:
@@ -125,7 +101,3 @@ def tell_length(
 
 
 _FACING = 0.9  # cosine: a tape is held square to a surface, within 25 degrees
-
-
-def _is_leaf_of(row: Row, around: shapely.Polygon) -> bool:
-    return row["kind"] == schemas.LEAF and shapely.from_wkb(row["geometry"]).intersects(around)

@@ -14,6 +14,7 @@ from typing import NoReturn
 
 from scanplan import interrupts, surroundings
 from scanplan.errors import StageError
+from scanplan.project import dataset_files, dataset_list
 from scanplan.project.code_files import state_version
 from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
@@ -43,10 +44,14 @@ def main(words: Sequence[str] | None = None) -> int:
     given = list(sys.argv[1:] if words is None else words)
     try:
         if given[:1] == [OPEN]:
-            return open_results(_read_open(given[1:]))
+            asked = _read_open(given[1:])
+            return serve_results(Path(asked.results), asked)
         if given[:1] == [TAKE]:
             return take_edits(given[1:])
         arguments = form_arguments(given)
+        asked, _ = _make_parser().parse_known_args(given)
+        if asked.open:
+            return serve_results(find_results(asked.recording), asked, arguments)
     except StageError as error:
         print(f"scanplan: {error}", file=sys.stderr)
         return _WRONG_CALL
@@ -94,10 +99,35 @@ def form_arguments(words: Sequence[str]) -> list[str]:
     return arguments
 
 
-def open_results(asked: argparse.Namespace) -> int:
-    """Show the report of a folder of results in the browser and take corrections, until Ctrl-C.
+def find_results(recordings: Sequence[str]) -> Path:
+    """Return the folder of the results of a command's only recording.
+
+    Raises
+    ------
+    StageError
+        If there is not one alone, or it has no name.
+    """
+    if len(recordings) > 1 or recordings[0] == DIFF or dataset_list.is_list(recordings[0]):
+        raise StageError("--open shows one floor; name one recording, or a folder of one floor's")
+    is_demo = recordings == [DEMO]
+    return Path("results", DEMO if is_demo else dataset_files.dataset_name(recordings[0]))
+
+
+def serve_results(
+    results: Path, asked: argparse.Namespace, first: Sequence[str] | None = None
+) -> int:
+    """Show a report in the browser and take corrections, until Ctrl-C.
 
     A signal to end does the same; a run that is at work ends with it.
+
+    Parameters
+    ----------
+    results : pathlib.Path
+        Its folder.
+    asked : argparse.Namespace
+        `cores`, and `no_browser`.
+    first : sequence of str, optional
+        The arguments of Snakemake's that make the results first, while the page shows how far.
 
     Raises
     ------
@@ -106,16 +136,21 @@ def open_results(asked: argparse.Namespace) -> int:
     """
     _prepare_environment()
     snakemake = [*_SNAKEMAKE, "--snakefile", str(SNAKEFILE), "--cores", asked.cores]
-    session = EditSession(Path(asked.results), snakemake)
+    session = EditSession(results, snakemake, None if first is None else [*_SNAKEMAKE, *first])
     with EditServer(session) as server:
         print(f"scanplan: the report is at {server.address}", flush=True)
-        print(f"scanplan: corrections go to {session.place}; Ctrl-C ends", flush=True)
+        if first is None:
+            print(f"scanplan: corrections go to {session.find_place()}; Ctrl-C ends", flush=True)
+        else:
+            print(f"scanplan: runs {_show(first)}; Ctrl-C ends it", flush=True)
         if not asked.no_browser and not webbrowser.open(server.address):
             print("scanplan: no browser could be started; open the address in one", flush=True)
         try:
             with suppress(KeyboardInterrupt):
                 interrupts.begin_work()
                 interrupts.interrupt_on_end()
+                if first is not None:
+                    session.go_on()
                 server.serve_forever()
         finally:
             session.end()
@@ -166,6 +201,12 @@ def _make_parser() -> _Parser:
         "--cores", type=_read_cores, default="2", metavar="N", help="`all` or a number (2)"
     )
     parser.add_argument("--configfile", metavar="FILE", help="settings, see config/settings.md")
+    _add_no_browser(parser)
+    parser.add_argument(
+        "--open",
+        action="store_true",
+        help="show in the browser how the plan comes about, then its report, until Ctrl-C",
+    )
     parser.add_argument(
         "--replace",
         action="append",
@@ -181,6 +222,10 @@ def _read_cores(word: str) -> str:
     return word
 
 
+def _add_no_browser(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--no-browser", action="store_true", help="tell the page's address alone")
+
+
 def _read_open(words: Sequence[str]) -> argparse.Namespace:
     parser = _Parser(
         prog=f"scanplan {OPEN}",
@@ -188,7 +233,7 @@ def _read_open(words: Sequence[str]) -> argparse.Namespace:
         " recording, and makes the plan anew; on this computer alone, until Ctrl-C.",
     )
     parser.add_argument("results", help="a folder with results, such as results/demo")
-    parser.add_argument("--no-browser", action="store_true", help="tell the address alone")
+    _add_no_browser(parser)
     parser.add_argument("--cores", type=_read_cores, default="2", metavar="N", help="(2)")
     return parser.parse_args(words)
 

@@ -19,6 +19,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 from scanplan.interrupts import WATCHED
 from scanplan.project.dataset_files import TARGETS
+from scanplan.project.run.run_status import StatusFile, ToldStage
 from scanplan.project.run.terminal import Terminal
 from scanplan.project.texts import CONSOLE_WIDTH, cut_line
 
@@ -63,8 +64,14 @@ class _Stage:
     log: Path
     began_s: float
     told_s: float
+    rule: str = ""
     waits: bool = True
     late: str = ""
+
+    def tell(self, now_s: float, said: str) -> ToldStage:
+        """Return what a page is told of it; whole seconds, as what is told anew is written anew."""
+        took_s = float(round(now_s - self.began_s))
+        return ToldStage(self.rule, self.name, self.dataset, took_s, said)
 
     def is_at_work(self, now_s: float) -> bool:
         """Return whether it has opened its log: on a cluster it may wait for long."""
@@ -111,6 +118,7 @@ class RunConsole(logging.Handler):
         self._total = self._ended = 0
         self._is_over = threading.Event()
         self._guard = threading.RLock()
+        self._status = StatusFile()
         self._when_idle: Callable[[], None] = lambda: None
 
     def take_over(self, logger: logging.Logger, when_idle: Callable[[], None]) -> None:
@@ -149,7 +157,9 @@ class RunConsole(logging.Handler):
             self._when_idle()
         elif event == LogEvent.RUN_INFO:
             stats = getattr(record, "stats", {})
-            self._total = sum(n for rule, n in stats.items() if rule not in _NO_STAGES)
+            wanted = {rule: n for rule, n in stats.items() if rule not in _NO_STAGES}
+            self._total = sum(wanted.values())
+            self._status.begin(wanted)
         elif event == LogEvent.JOB_INFO and getattr(record, "log", None):
             self._open(record)
         elif event == LogEvent.JOB_FINISHED:
@@ -163,20 +173,23 @@ class RunConsole(logging.Handler):
     def _open(self, record: logging.LogRecord) -> None:
         of_job = dict(getattr(record, "wildcards", {}))
         dataset = _shorten_name(of_job.pop("dataset", ""))
-        name = " ".join([getattr(record, "rule_name", ""), *of_job.values()])
+        rule = getattr(record, "rule_name", "")
+        name = " ".join([rule, *of_job.values()])
         now_s = time.monotonic()
         # an older log stays until the job has begun, and is not its own
         log = Path(getattr(record, "log", [""])[0])
         log.unlink(missing_ok=True)
-        self._stages[getattr(record, "jobid", -1)] = _Stage(dataset, name, log, now_s, now_s)
+        self._stages[getattr(record, "jobid", -1)] = _Stage(dataset, name, log, now_s, now_s, rule)
 
     def _close(self, number: int, how: str) -> None:
         stage = self._stages.pop(number, None)
         if stage is None or (how and not stage.log.exists()):
             return
         self._ended += not how
-        took_s = time.monotonic() - stage.began_s
+        now_s = time.monotonic()
+        took_s = now_s - stage.began_s
         said, warnings = stage.findings()
+        self._status.end(stage.tell(now_s, said), is_failed=bool(how))
         for warning in warnings:
             self._terminal.say(self._line(stage, f"warning: {warning.partition(': ')[2]}"))
         self._terminal.say(self._timed_line(stage, took_s, how or said))
@@ -203,6 +216,7 @@ class RunConsole(logging.Handler):
         for stage in stages:
             if late := stage.find_late():
                 self._terminal.say(self._line(stage, late))
+        self._status.tell(stage.tell(now_s, stage.progress()) for stage in stages)
         if self._terminal.in_place:
             self._terminal.show([self._running_line(stage, now_s) for stage in stages])
             return

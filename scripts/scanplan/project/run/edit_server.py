@@ -4,6 +4,7 @@ It listens on 127.0.0.1. Whoever asks needs the token in the address; a page of 
 name that leads here, gets nothing.
 """
 
+import contextlib
 import json
 import mimetypes
 import os
@@ -13,11 +14,13 @@ import zlib
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from typing import Any, cast
 from urllib.parse import unquote, urlsplit
 
 from scanplan.errors import StageError
-from scanplan.project.run.edit_session import ConflictError, EditSession
+from scanplan.project.run import growing
+from scanplan.project.run.edit_session import PAGE, ConflictError, EditSession
 
 _HERE = "127.0.0.1"
 _FIRST_PORT, _N_PORTS = 49152, 10_000  # of those that nobody has registered
@@ -37,6 +40,10 @@ _SHOWN = (
     *(".json", ".pgm", ".yaml", ".tum", ".txt", ".bcf", ".laz"),
 )
 """Files that the page links, by suffix; tables and recordings are none of them."""
+_TAKEN = [("api", what) for what in ("corrections", "stop", "go")]
+"""What a page may send."""
+_RUN_PAGE = Path(__file__).absolute().parents[4] / "workflow/report/run/run.html"
+"""What is shown in the report's place until there is one."""
 
 
 class EditServer(ThreadingHTTPServer):
@@ -72,7 +79,7 @@ class EditServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """The address of the page."""
-        return f"http://{_HERE}:{self.server_port}/{self.token}/report.html"
+        return f"http://{_HERE}:{self.server_port}/{self.token}/{PAGE}"
 
 
 class _Handler(BaseHTTPRequestHandler):
@@ -85,10 +92,17 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         place = self._find_place()
+        session = self._served.session
         if place == ("api", "state"):
-            self._answer(self._served.session.state)
+            self._answer(session.state)
         elif place == ("api", "run"):
-            self._answer(self._served.session.tell_run)
+            self._answer(session.tell_run)
+        elif place == ("api", "drawn"):
+            self._answer(session.draw)
+        elif place == ("api", "points"):
+            self._send_points()
+        elif place == (PAGE,) and not session.is_made:
+            self._send(HTTPStatus.OK, "text/html", _RUN_PAGE.read_bytes())
         elif place is not None:
             self._send_file(place)
 
@@ -104,10 +118,12 @@ class _Handler(BaseHTTPRequestHandler):
             asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         except (ValueError, RecursionError):
             asked = None
-        if isinstance(asked, dict):
-            self._answer(lambda: self._served.session.save(asked))
-        else:
-            self._refuse(HTTPStatus.BAD_REQUEST, "expected `survey`, `revision` and `entries`")
+        if not isinstance(asked, dict):
+            self._refuse(HTTPStatus.BAD_REQUEST, "expected an object of JSON")
+            return
+        session = self._served.session
+        acts = {"stop": session.stop, "go": session.go_on}
+        self._answer(acts.get(place[1], lambda: session.save(asked)))
 
     def log_message(self, format: str, *args: object) -> None:
         """Say nothing: addresses hold the token."""
@@ -131,7 +147,7 @@ class _Handler(BaseHTTPRequestHandler):
         length = self.headers.get("Content-Length", "")
         if "Origin" not in self.headers:
             return HTTPStatus.FORBIDDEN, "asked by no page"
-        if place != ("api", "corrections"):
+        if place not in _TAKEN:
             return HTTPStatus.NOT_FOUND, "nothing is there"
         if self.headers.get_content_type() != "application/json":
             return HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "expected JSON"
@@ -157,7 +173,20 @@ class _Handler(BaseHTTPRequestHandler):
         kind = mimetypes.guess_type(path.name)[0] or "application/octet-stream"
         self._send(HTTPStatus.OK, kind, content)
 
-    def _answer(self, act: Callable[[], Mapping[str, Any]]) -> None:
+    def _send_points(self) -> None:
+        pieces = growing.send_points(self._served.session.results)
+        try:
+            first = next(pieces)
+        except StageError as error:
+            self._refuse(HTTPStatus.BAD_REQUEST, str(error))
+            return
+        # how much is to come is not known: the end of the connection is that of the points
+        self._send(HTTPStatus.OK, "application/octet-stream", first, is_whole=False)
+        with contextlib.closing(pieces):
+            for piece in pieces:
+                self.wfile.write(piece)
+
+    def _answer(self, act: Callable[[], Mapping[str, Any] | bytes]) -> None:
         status = HTTPStatus.OK
         try:
             try:
@@ -165,7 +194,7 @@ class _Handler(BaseHTTPRequestHandler):
             except ConflictError as error:
                 status = HTTPStatus.CONFLICT
                 said = {**self._served.session.state(), "error": str(error)}
-            content = json.dumps(said).encode()
+            content = said if isinstance(said, bytes) else json.dumps(said).encode()
         except StageError as error:
             self._refuse(HTTPStatus.BAD_REQUEST, str(error))
         except (OSError, TypeError, ValueError, RecursionError) as error:
@@ -178,11 +207,14 @@ class _Handler(BaseHTTPRequestHandler):
     def _refuse(self, status: HTTPStatus, fault: str) -> None:
         self._send(status, "application/json", json.dumps({"error": fault}).encode())
 
-    def _send(self, status: HTTPStatus, kind: str, content: bytes) -> None:
+    def _send(
+        self, status: HTTPStatus, kind: str, content: bytes, *, is_whole: bool = True
+    ) -> None:
         is_text = kind.startswith("text/") or kind.endswith(("json", "xml"))
         self.send_response(status)
         self.send_header("Content-Type", kind + "; charset=utf-8" * is_text)
-        self.send_header("Content-Length", str(len(content)))
+        if is_whole:
+            self.send_header("Content-Length", str(len(content)))
         for name, value in _HEADERS.items():
             self.send_header(name, value)
         self.end_headers()

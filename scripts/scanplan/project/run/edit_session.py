@@ -4,7 +4,6 @@ import hashlib
 import json
 import os
 import re
-import subprocess
 import tempfile
 import threading
 from collections.abc import Mapping, Sequence
@@ -17,6 +16,8 @@ import yaml
 from scanplan.errors import StageError
 from scanplan.project import corrections_file, run_note
 from scanplan.project.dataset_files import is_survey_file
+from scanplan.project.run import growing
+from scanplan.project.run.served_run import ServedRun
 from scanplan.store import atomic
 
 PAGE = "report.html"
@@ -25,9 +26,6 @@ _DATA = re.compile(rb'id="data">(.*?)</script>', re.DOTALL)
 """What a page states of the plan that it shows, as JSON."""
 _OF_PAGE = re.compile(rb"(survey: [^#\n]*\n|corrections:( \[\])?\n|- \{[^#\n]*\}\n)*")
 """A file of corrections in which nothing stands but entries, a line each: no comment is lost."""
-_STAGE = re.compile(r"^ *(\d+)/(\d+) (.*)$")
-"""A line of a run on a stage that has ended: how many have, of how many."""
-_MOST_LETTERS = 200  # of a line of the run that a page shows
 
 
 class ConflictError(Exception):
@@ -43,35 +41,57 @@ class EditSession:
         A folder below results/.
     command : sequence of str
         What begins Snakemake, without the dataset's own settings.
+    first : sequence of str, optional
+        A command whose run makes the results first.
 
     Raises
     ------
     StageError
-        If there is no report, or nothing says what the results are of.
+        If there is no report, or nothing says what the results are of, and no run makes them.
     """
 
-    def __init__(self, results: Path, command: Sequence[str]) -> None:
+    def __init__(
+        self, results: Path, command: Sequence[str], first: Sequence[str] | None = None
+    ) -> None:
         self.results = results.absolute()
         if self.results.parent.name != "results":
             self.results = results.resolve()  # a link to it
-        page = results / PAGE
-        if not page.is_file() or self.results.parent.name != "results":
-            raise StageError(f"{page}: there is no such report; name a folder below results/")
         self._command = command
+        self._first = first
         self._root = self.results.parents[1]
-        self._made = run_note.read_note(self.results)
-        dataset = None if self._made.dataset is None else self._root / self._made.dataset
+        self._guard = threading.Lock()
+        self.run = ServedRun(self._root, self.results.name)
+        self._drawing = threading.Lock()
+        self._picture: tuple[str, bytes] = "", b"{}"
+        if first is None:
+            page = results / PAGE
+            if not page.is_file() or self.results.parent.name != "results":
+                raise StageError(f"{page}: there is no such report; name a folder below results/")
+            self.find_place()
+
+    @property
+    def is_made(self) -> bool:
+        """Whether there is a report to show: not while the run that makes it first is not over."""
+        return self._first is None and (self.results / PAGE).is_file()
+
+    def find_place(self) -> Path:
+        """Return where corrections are saved.
+
+        Raises
+        ------
+        StageError
+            If nothing says what the results are of, or that is not there.
+        """
+        made = run_note.read_note(self.results)
+        dataset = None if made.dataset is None else self._root / made.dataset
         is_simulated = dataset is None or is_survey_file(dataset)
-        self.place = self._root / corrections_file.place_corrections(
+        place = self._root / corrections_file.place_corrections(
             self.results.name, dataset, is_simulated=is_simulated
         )
-        beside = self.place.parent if is_simulated or dataset is None else dataset
+        beside = place.parent if is_simulated or dataset is None else dataset
         if not beside.exists():
             raise StageError(f"{beside}: does not exist; put it back, or run it where it is now")
-        self._guard = threading.Lock()
-        self._run: subprocess.Popen[str] | None = None
-        self._listener = threading.Thread()
-        self._lines: list[str] = []
+        return place
 
     def state(self) -> dict[str, Any]:
         """Return the corrections that are saved, and which plan the newest page shows.
@@ -88,7 +108,7 @@ class EditSession:
             "entries": entries,
             "revision": revision,
             "page": page.get("made"),
-            "running": self._is_running(),
+            "running": self.run.is_running,
         }
 
     def save(self, asked: Mapping[str, Any]) -> dict[str, Any]:
@@ -107,7 +127,7 @@ class EditSession:
             If the file has changed since.
         """
         with self._guard:
-            if self._is_running():
+            if self.run.is_running:
                 raise StageError("a run is at work; save once it has ended, changes are kept here")
             survey = self._read_page().get("survey", "")
             if asked.get("survey") != survey:
@@ -119,8 +139,9 @@ class EditSession:
             entries = asked.get("entries")
             if not isinstance(entries, list):
                 raise StageError("entries: expected a list")
-            self._write(entries, survey)
-            self._note(before, entries)
+            place = self.find_place()
+            _write(place, entries, survey)
+            _note(place, before, entries)
             self._begin()
         return {"revision": self._read()[1]}
 
@@ -133,42 +154,67 @@ class EditSession:
             If an entry is wrong, or a run is at work here.
         """
         with self._guard:
-            if self._is_running():
+            if self.run.is_running:
                 raise StageError("a run is at work; take them once it has ended")
-            survey = self._read_page().get("survey", "")
             before, _ = self._read()
-            self._write(entries, survey)
-            self._note(before, entries)
+            place = self.find_place()
+            _write(place, entries, self._read_page().get("survey", ""))
+            _note(place, before, entries)
 
     def tell_run(self) -> dict[str, Any]:
-        """Return how far the run is: `running`, `ended` of `total` stages, a `line`, an `error`."""
-        with self._guard:
-            stages = [found for line in self._lines if (found := _STAGE.match(line))]
-            said = {
-                "running": self._is_running(),
-                "ended": 0,
-                "total": 0,
-                "line": "Working out what changes",
-            }
-            if stages:
-                said |= {"ended": int(stages[-1][1]), "total": int(stages[-1][2])}
-                said["line"] = stages[-1][3][:_MOST_LETTERS]
-            if self._run is not None and self._run.poll():
-                told = [line for line in self._lines if line.startswith("scanplan: ")]
-                fault = told[-1] if told else "the run ended without a word"
-                said["error"] = fault.removeprefix("scanplan: ")[:_MOST_LETTERS]
-            return said
+        """Return how far the run is, as `ServedRun.tell` says, and what is `drawn` of the plan.
 
-    def end(self) -> None:
-        """End the run, if one is at work; what it has made stays."""
+        `made` says whether there is a report; `drawn` differs once there is more to be shown.
+        """
+        with self._guard:
+            if self.run.is_done:
+                self._first = None
+            said = self.run.tell()
+            if self.run.is_done and not self.is_made:
+                said["error"] = f"the run has made no {self.results.name}/{PAGE}"
+            return said | {"made": self.is_made, "drawn": growing.stamp(self.results)}
+
+    def go_on(self) -> dict[str, Any]:
+        """Begin the run that makes the results, or go on with one that was stopped or failed.
+
+        Raises
+        ------
+        StageError
+            If there is none to go on with, or it cannot begin.
+        """
+        with self._guard:
+            if self.run.is_running:
+                raise StageError("a run is at work already")
+            if self._first is None and not self.run.is_broken and self.is_made:
+                raise StageError("no run was stopped; save corrections to begin one")
+            self._begin()
+        return {}
+
+    def stop(self) -> dict[str, Any]:
+        """Stop the run, if one is at work; what it has made stays, and `go_on` goes on with it."""
         # what is being saved has begun its run first
         with self._guard:
-            if self._is_running() and self._run is not None:
-                self._run.terminate()
-                self._listener.join()
+            self.run.stop()
+        return {}
 
-    def _is_running(self) -> bool:
-        return self._listener.is_alive()
+    def end(self) -> None:
+        """Stop the run for good, as nobody looks at it any more."""
+        with self._guard:
+            self.run.end()
+
+    def draw(self) -> bytes:
+        """Return the picture of what the run has made so far, as JSON; drawn once for all pages.
+
+        Raises
+        ------
+        StageError
+            If what there is cannot be drawn.
+        """
+        with self._drawing:
+            stamp = growing.stamp(self.results)
+            if stamp and stamp != self._picture[0]:
+                self._picture = stamp, growing.draw(self.results)
+            return self._picture[1]
 
     def _read_page(self) -> dict[str, Any]:
         page = self.results / PAGE
@@ -183,84 +229,74 @@ class EditSession:
 
     def _read(self) -> tuple[list[dict[str, Any]], str]:
         """Return the entries of the file, and a digest of it."""
-        found = corrections_file.find_beside(self.place)
+        place = self.find_place()
+        found = corrections_file.find_beside(place)
         if found is None:
             return [], ""
-        if found != self.place:
+        if found != place:
             raise StageError(f"{found}: is not written here; move it away, or edit it by hand")
         # what a page cannot be told is a mistake, too: a date without quotes, a number that is none
         corrections_file.read_corrections(found)
         entries = corrections_file.read_entries(found)
         return entries, hashlib.sha256(found.read_bytes()).hexdigest()
 
-    def _write(self, entries: Sequence[Any], survey: str) -> None:
-        lines = [f"- {json.dumps(entry, ensure_ascii=False)}\n" for entry in entries]
-        head = f"survey: {json.dumps(survey, ensure_ascii=False)}\ncorrections:"
-        text = f"{head}\n{''.join(lines)}" if lines else f"{head} []\n"
-        try:
-            content = text.encode()
-        except UnicodeEncodeError as error:
-            fault = f"has {text[error.start]!r}, half of a character; write both or none"
-            raise StageError(f"what is said {fault}") from None
-        with atomic.replace_file(self.place) as temporary:
-            temporary.write_bytes(content)
-            try:
-                corrections_file.read_corrections(temporary)
-            except StageError as error:
-                raise StageError(str(error).replace(f"{temporary}: ", "")) from None
-            self._keep_written()
-
-    def _keep_written(self) -> None:
-        """Keep the file that a person wrote beside it, once, as comments are not written anew."""
-        kept = self.place.with_name(f"{self.place.name}{_BY_HAND}")
-        if not self.place.exists() or os.path.lexists(kept):
-            return
-        content = self.place.read_bytes()
-        if not _OF_PAGE.fullmatch(content):
-            atomic.write_bytes(kept, content)
-
-    def _note(self, before: Sequence[Any], after: Sequence[Any]) -> None:
-        """Add to the log what was said and taken back, and when."""
-        now = datetime.now(UTC).isoformat(timespec="seconds")
-        lines = [("said", entry) for entry in after if entry not in before]
-        lines += [("taken back", entry) for entry in before if entry not in after]
-        # by the recording's name: another one in its folder has a log of its own
-        place = self.place.with_suffix(".log")
-        with atomic.explain_unwritable(place), place.open("a", encoding="utf-8") as log:
-            for what, entry in lines:
-                log.write(json.dumps({"saved": now, what: entry}, ensure_ascii=False) + "\n")
-
     def _begin(self) -> None:
-        """Run the stages that the corrections change."""
-        made = self._made
-        datasets = made.storeys or [made.dataset] * (made.dataset is not None)
-        asked = [f"dataset={json.dumps(datasets)}"] if datasets else []
+        """Run the stages that the corrections change, or all where nothing is made yet."""
         settings = None
         try:
+            if self._first is not None:
+                self.run.begin(self._first)
+                return
+            made = run_note.read_note(self.results)
+            datasets = made.storeys or [made.dataset] * (made.dataset is not None)
+            asked = ["--config", f"dataset={json.dumps(datasets)}"] if datasets else []
             with tempfile.NamedTemporaryFile("w", suffix=".yaml", delete=False) as file:
                 settings = Path(file.name)
                 yaml.safe_dump(made.settings, file)
             given = ["--configfile", file.name] if made.settings else []
-            self._run = subprocess.Popen(
-                [*self._command, *given, *(["--config", *asked] if asked else [])],
-                cwd=self._root,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                text=True,
-                errors="replace",
-            )
+            self.run.begin([*self._command, *given, *asked], settings)
         except OSError as error:
             if settings is not None:
                 settings.unlink(missing_ok=True)
-            fault = f"the corrections are saved, but no run begins ({error.strerror})"
+            fault = f"what was said is saved, but no run begins ({error.strerror})"
             raise StageError(f"{fault}; run the dataset again") from None
-        self._lines = []
-        self._listener = threading.Thread(target=self._listen, args=(self._run, settings))
-        self._listener.daemon = True
-        self._listener.start()
 
-    def _listen(self, run: subprocess.Popen[str], settings: Path) -> None:
-        with run:
-            self._lines.extend(line.rstrip() for line in run.stdout or ())
-        settings.unlink(missing_ok=True)
+
+def _write(place: Path, entries: Sequence[Any], survey: str) -> None:
+    lines = [f"- {json.dumps(entry, ensure_ascii=False)}\n" for entry in entries]
+    head = f"survey: {json.dumps(survey, ensure_ascii=False)}\ncorrections:"
+    text = f"{head}\n{''.join(lines)}" if lines else f"{head} []\n"
+    try:
+        content = text.encode()
+    except UnicodeEncodeError as error:
+        fault = f"has {text[error.start]!r}, half of a character; write both or none"
+        raise StageError(f"what is said {fault}") from None
+    with atomic.replace_file(place) as temporary:
+        temporary.write_bytes(content)
+        try:
+            corrections_file.read_corrections(temporary)
+        except StageError as error:
+            raise StageError(str(error).replace(f"{temporary}: ", "")) from None
+        _keep_written(place)
+
+
+def _keep_written(place: Path) -> None:
+    """Keep the file that a person wrote beside it, once, as comments are not written anew."""
+    kept = place.with_name(f"{place.name}{_BY_HAND}")
+    if not place.exists() or os.path.lexists(kept):
+        return
+    content = place.read_bytes()
+    if not _OF_PAGE.fullmatch(content):
+        atomic.write_bytes(kept, content)
+
+
+def _note(place: Path, before: Sequence[Any], after: Sequence[Any]) -> None:
+    """Add to the log what was said and taken back, and when."""
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    lines = [("said", entry) for entry in after if entry not in before]
+    lines += [("taken back", entry) for entry in before if entry not in after]
+    # by the recording's name: another one in its folder has a log of its own
+    log_path = place.with_suffix(".log")
+    with atomic.explain_unwritable(log_path), log_path.open("a", encoding="utf-8") as log:
+        for what, entry in lines:
+            log.write(json.dumps({"saved": now, what: entry}, ensure_ascii=False) + "\n")

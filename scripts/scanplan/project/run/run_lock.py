@@ -8,11 +8,11 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from datetime import timedelta
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 import psutil
 
@@ -26,6 +26,7 @@ _State = tuple[int, ...]
 
 LOCK_FILE = Path(".snakemake/scanplan.lock")
 _STAGES_END_S = 1.5  # half a second longer than they take, unless a library holds Python's lock
+_BEGINS_S = 2.0  # from Snakemake's lock to ours, on a busy machine; else milliseconds
 _OF_STAGES = ".snakemake/scripts/"  # in the command of every stage
 
 
@@ -120,6 +121,43 @@ def release_results(held: Iterable[int]) -> None:
     """Give up what `lock_results` has locked."""
     for descriptor in held:
         os.close(descriptor)
+
+
+def tell_locked(persistence: Any, fault: type[Exception], end: Callable[..., object]) -> None:
+    """Have a class of Snakemake's that finds a folder locked say so as we do.
+
+    A run without our profile locks the folder in Snakemake's way, too, before it takes our lock:
+    one that begins within half a second finds that of Snakemake alone.
+
+    Parameters
+    ----------
+    persistence : type
+        With a context manager `lock`, which raises `fault` where the folder is locked.
+    end : callable
+        Calls a function, and ends the run in one line if that raises `StageError`.
+    """
+    lock = persistence.lock
+
+    @contextmanager
+    def lock_or_tell(self: Any) -> Iterator[None]:
+        with ExitStack() as held:
+            try:
+                held.enter_context(lock(self))
+            except fault:
+                end(_await_holder)
+                # what no run holds was left by one that was killed: Snakemake says how to remove it
+                raise
+            yield
+
+    persistence.lock = lock_or_tell
+
+
+def _await_holder() -> None:
+    """Raise once a run takes the folder's lock, whose own has begun to; return if none does."""
+    until_s = time.monotonic() + _BEGINS_S
+    while time.monotonic() < until_s:
+        lock_folder().close()
+        time.sleep(_BEGINS_S / 20)
 
 
 class FolderRun:

@@ -23,6 +23,8 @@ _SIGNATURE = b"ASTM-E57"
 _PAGE_BYTES = 1024  # the last four of each are its checksum
 _CONTENT_BYTES = 1020
 _MOST_XML_BYTES = 2**24  # two thousand scans with all that a scanner's program states
+COLOURS = ("colorRed", "colorGreen", "colorBlue")
+"""Fields of a point."""
 _NAMESPACE = "{http://www.astm.org/COMMIT/E57/2010-e57-v1.0}"
 
 
@@ -37,11 +39,14 @@ class E57Scan:
     fields : tuple of str
         Of each of its points.
     n_points : int
+    colour_limits : tuple of three (float, float), or None
+        Of red, green and blue what stands for none and for all; None of points without colours.
     """
 
     world_from_sensor: FloatArray
     fields: tuple[str, ...]
     n_points: int
+    colour_limits: tuple[tuple[float, float], ...] | None = None
 
 
 def read_scans(path: Path) -> list[E57Scan]:
@@ -113,8 +118,26 @@ def _read_scan(child: Element) -> tuple[E57Scan, int]:
     n_points = int(points.get("recordCount", "0"))
     if n_points < 0:
         raise ValueError("negative count")
-    names = tuple(field.tag.removeprefix(_NAMESPACE) for field in fields)
-    return E57Scan(_read_pose(child), names, n_points), sum(map(_count_bits, fields))
+    by_name = {field.tag.removeprefix(_NAMESPACE): field for field in fields}
+    limits = None
+    if set(COLOURS) <= set(by_name):
+        limits = tuple(_read_colour_limits(child, name, by_name[name]) for name in COLOURS)
+    bits = sum(map(_count_bits, fields))
+    return E57Scan(_read_pose(child), tuple(by_name), n_points, limits), bits
+
+
+def _read_colour_limits(child: Element, name: str, field: Element) -> tuple[float, float]:
+    """Return the limits that a scan states of a colour, or else those of its field."""
+    of_field = (0.0, 1.0) if field.get("type") == "Float" else (0.0, 255.0)
+    found = []
+    for end, usual in zip(("Minimum", "Maximum"), of_field, strict=True):
+        stated = child.findtext(f"{_NAMESPACE}colorLimits/{_NAMESPACE}{name}{end}")
+        if stated is None and field.get("type") == "Integer":
+            stated = field.get(end.lower(), str(usual))
+        # an element without text is a zero
+        found.append(usual if stated is None else float(stated or 0))
+    low, high = found
+    return (low, high) if -np.inf < low < high < np.inf else of_field
 
 
 def _read_pose(child: Element) -> FloatArray:

@@ -126,7 +126,8 @@ class MergedCloud(UntimedScans):
         floor_z_m = self._storeys[self._number].floor_z_m
         above = [floor.floor_z_m for floor in self._storeys[self._number + 1 :]]
         low_m = np.append(self._places_m.min(axis=0)[:2] - _REACH_M, floor_z_m - _BELOW_M)
-        high_m = np.append(self._places_m.max(axis=0)[:2] + _REACH_M, np.inf)
+        # no ray goes higher: strays may lie kilometres up
+        high_m = self._places_m.max(axis=0) + _REACH_M
         if above:
             # the floor above, and what stands on it, is not of this storey
             high_m[2] = above[0] - 1.5 * storeys.CELL_M

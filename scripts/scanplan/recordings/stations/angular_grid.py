@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import Array, FloatArray, IntArray
 
 STEP_DEG = 0.4
 """Of directions: 3.5 cm on a wall 5 m away, in rows whose points do not stand above one another.
@@ -29,12 +29,19 @@ class AngularGrid:
         n_cells = int(self._begin[-1])
         self._best = np.full(n_cells, np.iinfo(np.int64).max)
         self._xyz_m = np.zeros((n_cells, 3), np.float32)
+        self._rgb: Array | None = None
         self._nearest_m = np.full(n_cells, np.inf, np.float32)
         self._farthest_m = np.zeros(n_cells, np.float32)
         self.n_points = 0
 
-    def add(self, xyz_m: FloatArray) -> None:
-        """Take points (n, 3), seen from the origin; those that are not finite are no points."""
+    def add(self, xyz_m: FloatArray, rgb: Array | None = None) -> None:
+        """Take points (n, 3), seen from the origin; those that are not finite are no points.
+
+        Parameters
+        ----------
+        rgb : (n, 3) uint16, optional
+            Their colours: of all points that are added, or of none.
+        """
         xyz_m = np.asarray(xyz_m, np.float64)
         range_m = np.sqrt(np.einsum("ij,ij->i", xyz_m, xyz_m))
         is_point = (range_m > 0) & (range_m < np.inf)
@@ -45,6 +52,10 @@ class AngularGrid:
         np.minimum.at(self._best, cell, key)
         is_best = self._best[cell] == key
         self._xyz_m[cell[is_best]] = xyz_m[is_best]
+        if rgb is not None:
+            if self._rgb is None:
+                self._rgb = np.zeros((len(self._best), 3), np.uint16)
+            self._rgb[cell[is_best]] = rgb[is_point][is_best]
         np.minimum.at(self._nearest_m, cell, range_m.astype(np.float32))
         np.maximum.at(self._farthest_m, cell, range_m.astype(np.float32))
         self.n_points += len(cell)
@@ -63,6 +74,11 @@ class AngularGrid:
     def xyz_m(self) -> FloatArray:
         """The points (m, 3) float32 that are kept, row by row from below, each by azimuth."""
         return self._xyz_m[self._farthest_m > 0]
+
+    @property
+    def rgb(self) -> Array | None:
+        """The colours (m, 3) uint16 of these points, if they were added with colours."""
+        return None if self._rgb is None else self._rgb[self._farthest_m > 0]
 
     @property
     def share_behind(self) -> float:

@@ -10,7 +10,8 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings.stations.station_scans import Station
+from scanplan.recordings.integrity import text_lines
+from scanplan.recordings.stations.station_scans import Block, Station
 from scanplan.types import FloatArray
 
 _BLOCK = 2**17  # lines at a time
@@ -18,6 +19,9 @@ _HEADER_LINES = (1, 1, 3, 3, 3, 3, 4, 4, 4, 4)
 """Numbers in each: columns, rows, the scanner's place and axes, and the transformation."""
 _LONGEST_LINE = 1024  # bytes, of seven numbers
 _LEAST_LINE = 6  # bytes: `0 0 0` and its end
+_POINT = (0, 1, 2)
+_COLOUR = (4, 5, 6)  # behind the intensity, 0 to 255
+_SHADES = 257  # of 16 bits to one of 8
 
 
 class _Header(NamedTuple):
@@ -45,15 +49,24 @@ def list_ptx_stations(path: Path) -> list[Station]:
             begin = file.tell()
             left = path.stat().st_size - begin
             is_there = header.n_points * _LEAST_LINE <= left + 1  # the last line may have no end
-            n_lines = sum(1 for _ in islice(file, header.n_points)) if is_there else left
+            lines = text_lines.iterate_lines(file, name)
+            n_lines = sum(1 for _ in islice(lines, header.n_points)) if is_there else left
             if n_lines < header.n_points:
                 raise StageError(
                     f"{name}: damaged: states {header.n_points} points, and {left} bytes are behind"
                     " it; copy or export it again"
                 )
             read = partial(_read_blocks, path, begin, name, header)
-            stations.append(Station(name, header.world_from_sensor, read))
+            has_colours = _has_colours(path, begin)
+            stations.append(Station(name, header.world_from_sensor, read, has_colours))
     return stations
+
+
+def _has_colours(path: Path, begin: int) -> bool:
+    """Return whether the first point of a scan has a colour."""
+    with path.open("rb") as file:
+        file.seek(begin)
+        return len(file.readline(_LONGEST_LINE).split()) > max(_COLOUR)
 
 
 def _read_header(file: BinaryIO, name: str) -> _Header | None:
@@ -91,22 +104,33 @@ def _place_scan(rows: list[list[float]]) -> _Header:
     return _Header(n_points, of_scanner, se3.invert_pose(of_scanner))
 
 
-def _read_blocks(path: Path, begin: int, name: str, header: _Header) -> Iterator[FloatArray]:
+def _read_blocks(
+    path: Path, begin: int, name: str, header: _Header, coloured: bool
+) -> Iterator[Block]:
     """Yield points (n, 3) of a scan in its own frame, NaN where a beam did not return."""
     left = header.n_points
+    columns = _POINT + _COLOUR if coloured else _POINT
     with path.open("rb") as file:
         file.seek(begin)
         while left > 0:
             n_lines = min(left, _BLOCK)
             try:
-                xyz_m = np.loadtxt(islice(file, n_lines), usecols=(0, 1, 2), ndmin=2)
+                values = np.loadtxt(
+                    text_lines.take_lines(file, n_lines, name), usecols=columns, ndmin=2
+                )
             except ValueError:
-                xyz_m = np.empty((0, 3))
-            if len(xyz_m) != n_lines:
+                values = np.empty((0, 3))
+            if len(values) != n_lines:
+                words = "x y z intensity" + (" red green blue" if coloured else "")
                 raise StageError(
                     f"{name}: damaged: one of the {n_lines} lines from point"
-                    f" {header.n_points - left} on is no point `x y z intensity`; export it again"
+                    f" {header.n_points - left} on is no point `{words}`; export it again"
                 )
+            xyz_m = values[:, :3]
             xyz_m[~xyz_m.any(axis=1)] = np.nan
-            yield se3.transform_points(header.sensor_from_points, xyz_m)
+            rgb = None
+            if coloured:
+                levels = np.clip(np.nan_to_num(values[:, 3:]), 0, 255)
+                rgb = (_SHADES * levels.round()).astype(np.uint16)
+            yield se3.transform_points(header.sensor_from_points, xyz_m), rgb
             left -= n_lines

@@ -8,7 +8,7 @@ import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import frame_edges, map_origin
+from scanplan.recordings import clouds, frame_edges, map_origin
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import UntimedScans
 from scanplan.recordings.stations.angular_grid import STEP_DEG, AngularGrid
@@ -23,6 +23,10 @@ _MOST_BEHIND = 0.08
 0.67."""
 _RIGID = 1e-3  # what files round a pose to stays within it
 
+Block = tuple[FloatArray, Array | None]
+"""Points (n, 3) float64 in the sensor's frame, NaN where a beam did not return, and their colours
+(n, 3) uint16, black where there is none; None where they are not asked for."""
+
 
 @dataclass(frozen=True)
 class Station:
@@ -34,17 +38,18 @@ class Station:
         The file and which of its scans, for errors.
     world_from_sensor : (4, 4) float64
     read_blocks : callable
-        Returns an iterator over its points (n, 3) float64 in the sensor's frame, some at a time;
-        NaN where a beam did not return.
+        Returns an iterator over its points, some at a time; given True, with their colours.
+    has_colours : bool
     """
 
     name: str
     world_from_sensor: FloatArray
-    read_blocks: Callable[[], Iterator[FloatArray]]
+    read_blocks: Callable[[bool], Iterator[Block]]
+    has_colours: bool = False
 
     def read_in_world(self) -> Iterator[FloatArray]:
         """Yield its points (n, 3) float64 where its pose puts them."""
-        for xyz_m in self.read_blocks():
+        for xyz_m, _ in self.read_blocks(False):
             yield se3.transform_points(self.world_from_sensor, xyz_m)
 
 
@@ -102,6 +107,20 @@ class StationScans(UntimedScans):
             )
         return grid.xyz_m, None
 
+    @property
+    def has_colours(self) -> bool:
+        """Whether any station has."""
+        return any(station.has_colours for station in self._stations)
+
+    def read_colours(self, scan_id: int) -> Array | None:
+        """Return the colours (n, 3) uint16 of the points that `scans` yields, if there are any."""
+        station = self._stations[scan_id]
+        if not station.has_colours:
+            return None
+        grid = _thin(station, self._unit_m, coloured=True)
+        is_in_range = clouds.is_in_range(grid.xyz_m, **self._limits)
+        return None if grid.rgb is None else grid.rgb[is_in_range]
+
 
 def are_merged(stations: Sequence[Station]) -> bool:
     """Return whether scans of one pose, or without any, are parts of a cloud in one frame.
@@ -119,10 +138,10 @@ def are_merged(stations: Sequence[Station]) -> bool:
     return any(_thin(station).share_behind > _MOST_BEHIND for station in stations)
 
 
-def _thin(station: Station, unit_m: float = 1.0) -> AngularGrid:
+def _thin(station: Station, unit_m: float = 1.0, *, coloured: bool = False) -> AngularGrid:
     grid = AngularGrid()
-    for xyz_m in station.read_blocks():
-        grid.add(unit_m * xyz_m)
+    for xyz_m, rgb in station.read_blocks(coloured):
+        grid.add(unit_m * xyz_m, rgb)
     return grid
 
 

@@ -52,15 +52,15 @@ def growing_plan_svg(
         f'<svg id="plan" viewBox="{_view_box(plan, positions_m)}" role="img"'
         ' aria-labelledby="plan-title" tabindex="0">',
         f'<title id="plan-title">Floor plan of {escape(plan.name)}</title>',
-        '<g id="floors">', *_rooms(plan), "</g>",
-        '<g id="points">', _point_image(points), "</g>",
-        '<g id="finished">', *draw_walls(plan), *_openings(plan), "</g>",
+        '<g id="floors">', *draw_rooms(plan), "</g>",
+        '<g id="points">', draw_image(points), "</g>",
+        '<g id="finished">', *draw_walls(plan), *draw_openings(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
         '<g id="edits"></g>',
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *_shown(shown_m), "</g>",
         '<g id="scans">', *_scans(positions_m), "</g>",
-        '<g id="labels">', *_labels(plan), "</g>",
+        '<g id="labels">', *draw_labels(plan), "</g>",
         '<g id="doubts">', *_doubts(plan), "</g>",
         '<g id="ticks"></g>',
         '<g id="tape"></g>',
@@ -109,7 +109,8 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
             yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"{more}')
 
 
-def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
+def draw_openings(plan: floorplan.FloorPlan) -> Iterator[str]:
+    """Yield the elements of a plan's openings."""
     kinds, widths_m = plan.openings["type"], plan.openings["width_m"]
     lines_m = floorplan.centrelines_m(plan.openings)
     for kind, line_m, width_m in zip(kinds, lines_m, widths_m, strict=True):
@@ -117,7 +118,8 @@ def _openings(plan: floorplan.FloorPlan) -> Iterator[str]:
         yield draw_path(line_m[None], f'class="opening {kind}"', title)
 
 
-def _rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
+def draw_rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
+    """Yield the elements of a plan's rooms."""
     rooms = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
     for room, x_m, y_m, area in zip(*rooms, plan.areas, strict=True):
         outline = " ".join(map(_outline_path, shapely.get_parts(area)))
@@ -126,14 +128,15 @@ def _rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
         yield f'<path class="room" {attributes} d="{outline}"/>'
 
 
-def _point_image(points: PointImage) -> str:
+def draw_image(points: PointImage) -> str:
+    """Return the element of a picture of points."""
     (x_m, y_m), (width_m, height_m) = points.low_m.tolist(), points.size_m.tolist()
     place = f'x="{format_number(x_m)}" y="{format_number(-y_m - height_m)}"'
     size = f'width="{format_number(width_m)}" height="{format_number(height_m)}"'
     return f'<image {place} {size} href="data:image/png;base64,{points.base64}"/>'
 
 
-def _labels(plan: floorplan.FloorPlan) -> Iterator[str]:
+def draw_labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Write each room's name and area; its width says how much of them there is room for."""
     rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
     named = plan.room_names, *rooms, plan.label_widths_m.tolist()

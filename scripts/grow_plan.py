@@ -1,0 +1,120 @@
+"""Write one plan of several surveys of a floor, and what each contributed."""
+
+from collections.abc import Mapping, Sequence
+
+from scanplan.arrays import array_plan
+from scanplan.changes import growth, growth_table
+from scanplan.changes.comparison import Scans
+from scanplan.changes.joined_scans import JoinedScans
+from scanplan.exports import drawing, dxf, geojson, svg
+from scanplan.exports.changes import compared_sheet, growth_sheet
+from scanplan.exports.data import element_tables
+from scanplan.exports.sheet.title import summarise_survey
+from scanplan.plan import floorplan_files
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.project import code_files
+from scanplan.stage import figure_files, log
+from scanplan.store import atomic, registered_scans, schemas, tables
+from scanplan.types import Columns, FilePath, Settings
+
+_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
+
+
+def grow_plan(
+    surveys: Sequence[Mapping[str, FilePath]],
+    outputs: Mapping[str, FilePath],
+    *,
+    names: Sequence[str],
+    settings: Settings,
+    threads: int = 1,
+    version: str = "",
+) -> None:
+    """Write contributions.parquet and .csv, and the plan as sheet, DXF and GeoJSON.
+
+    Parameters
+    ----------
+    surveys : sequence of dict of str to path-like
+        The earliest first: `faces`, `walls`, `openings`, `rooms`, `free`, `furniture`, `evidence`
+        and `confidence` of plan/, `scans` and `registration`.
+    outputs : dict of str to path-like
+        `table`, `csv`, `geojson`, `svg`, `pdf`, `png`, `dxf` and `summary`, to write.
+    names : sequence of str
+        Of the datasets.
+    settings : dict
+        All of the latest survey.
+    threads : int
+        Cores to use; the result does not depend on it.
+    version : str
+        Of the software, for the title block.
+
+    Raises
+    ------
+    StageError
+        If the surveys do not fit each other.
+    """
+    export = settings["plan"]["export"]
+    assumed_m = {key: export[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+
+    def read(files: Mapping[str, FilePath], name: str) -> tuple[FloorPlan, Scans]:
+        wanted = {part: files[part] for part in _PLAN}
+        plan = floorplan_files.read_floorplan(wanted, name, **assumed_m)
+        store = tables.ScanStore(files["scans"])
+        return plan, (store, registered_scans.read_registered_scans(files["registration"], store))
+
+    def read_day(files: Mapping[str, FilePath]) -> str:
+        evidence = tables.read_table(files["evidence"], schemas.EVIDENCE, allow_empty=True)
+        return summarise_survey(evidence).surveyed
+
+    def assemble(joined: JoinedScans) -> tuple[FloorPlan, Columns]:
+        made = array_plan.assemble_plan(joined, names[-1], threads)
+        return made.drawn, made.evidence
+
+    known = [read(files, name) for files, name in zip(surveys, names, strict=True)]
+    grown = growth.grow_plan(known, settings, assemble)
+    columns = growth_table.tabulate_contributions(grown)
+    lines = growth_table.summarise_growth(grown)
+    facts = compared_sheet.ComparedFacts(
+        export["project"] or "", (read_day(surveys[0]), read_day(surveys[-1])), version
+    )
+    sheet = growth_sheet.compose_growth_sheet(grown, facts)
+    figure = drawing.draw_sheet(sheet)
+    title = f"Plan of {', '.join(names)}"
+    rows = {
+        of: [geojson.round_value(value) for value in columns[of].tolist()]
+        for of in columns
+        if of != "geometry"
+    }
+    tables.write_table(
+        outputs["table"],
+        schemas.CONTRIBUTIONS,
+        columns,
+        allow_empty=True,
+        notes=growth_table.state_surveys(grown),
+    )
+    atomic.write_text(outputs["csv"], element_tables.format_csv(rows))
+    atomic.write_text(outputs["geojson"], geojson.format_geojson(grown.plan, grown.evidence))
+    atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
+    atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
+    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, export["dxf_unit"]))
+    atomic.write_text(outputs["summary"], "\n".join([title, *lines, ""]))
+    log.log_line(f"grow_plan: {'; '.join(lines)}")
+
+
+if __name__ == "__main__":
+    with log.log_to_file(snakemake.log[0]):
+        grow_plan(
+            [
+                {
+                    name.partition("_")[2]: file
+                    for name, file in snakemake.input.items()
+                    if name.partition("_")[0] == f"s{row}"
+                }
+                for row in range(len(snakemake.params.names))
+            ],
+            dict(snakemake.output.items()),
+            names=snakemake.params.names,
+            settings=snakemake.params.settings,
+            threads=snakemake.threads,
+            version=code_files.state_version(),
+        )

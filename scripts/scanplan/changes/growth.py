@@ -1,0 +1,116 @@
+"""A floor that is surveyed again and again: one plan of all surveys, in the frame of the first."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from scanplan.changes import comparison
+from scanplan.changes.comparison import Comparison, Scans
+from scanplan.changes.contributions import Contribution, rate_contributions
+from scanplan.changes.joined_scans import (
+    Drive,
+    JoinedScans,
+    check_alike,
+    find_lift_m,
+    place_drive,
+)
+from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.stale_rays import find_stale_places
+from scanplan.changes.surveys import RaySight, Survey, read_rays
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.types import Columns, Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Grown:
+    """A plan of several surveys.
+
+    Attributes
+    ----------
+    plan : FloorPlan
+    evidence : dict of str to (n,) array
+        The columns of `schemas.EVIDENCE`.
+    names : sequence of str
+        Of the surveys, the earliest first.
+    n_scans : sequence of int
+        That each gave.
+    n_unlevelled : int
+        Surveys of which neither floor nor ceiling ties heights to those of the first.
+    steps : sequence of Comparison
+        What each survey but the first changed in what was known before.
+    contributions : sequence of Contribution
+    """
+
+    plan: FloorPlan
+    evidence: Columns
+    names: Sequence[str]
+    n_scans: Sequence[int]
+    n_unlevelled: int
+    steps: Sequence[Comparison]
+    contributions: Sequence[Contribution]
+
+
+Assemble = Callable[[JoinedScans], tuple[FloorPlan, Columns]]
+"""What makes a plan of scans, and the evidence of its walls."""
+
+
+def grow_plan(
+    surveys: Sequence[tuple[FloorPlan, Scans]], settings: Settings, assemble: Assemble
+) -> Grown:
+    """Make one plan of surveys of a floor, the earliest first.
+
+    Each is compared with the plan of those before it; where it found a change, rays of those are
+    left out. So what is new, and what nobody looked at again, stand beside one another.
+
+    Raises
+    ------
+    StageError
+        If two do not fit each other, or cannot be laid on one another.
+    """
+    check_alike(surveys)
+    (first, scans), *later = surveys
+    drives = [place_drive(scans, first, PlaneMotion(), first)]
+    known: tuple[FloorPlan, Scans] = (first, scans)
+    evidence: Columns = {}
+    steps: list[Comparison] = []
+    for plan, own in later:
+        step = comparison.compare_surveys((known[0], plan), (known[1], own))
+        stale = find_stale_places(step)
+        drives = [replace(drive, stale=(*drive.stale, stale)) for drive in drives]
+        drives.append(place_drive(own, plan, step.tie.fit.motion, first))
+        joined = JoinedScans(drives, settings)
+        drawn, evidence = assemble(joined)
+        known = _leave_unrated(drawn), (joined, joined.known)
+        steps.append(step)
+    contributions = rate_contributions(
+        known[0],
+        [
+            _see(drive, plan, first, step)
+            for drive, (plan, _), step in zip(drives, surveys, [steps[0], *steps], strict=True)
+        ],
+        [int(drive.known.t_ns.max()) for drive in drives],
+        [step.changes for step in steps],
+    )
+    return Grown(
+        known[0],
+        evidence,
+        [plan.name for plan, _ in surveys],
+        [len(drive.known.scan_ids) for drive in drives],
+        sum(not own[0].planar and find_lift_m(plan, first) is None for plan, own in later),
+        steps,
+        contributions,
+    )
+
+
+def _leave_unrated(plan: FloorPlan) -> FloorPlan:
+    """Return a plan whose walls were rated by nobody as one that says so."""
+    unknown = np.full(len(plan.walls["wall"]), np.nan)
+    return replace(plan, walls={**plan.walls, "p_true": unknown})
+
+
+def _see(drive: Drive, plan: FloorPlan, first: FloorPlan, step: Comparison) -> Survey:
+    """Return a survey in the frame of the first, without rays that were overtaken."""
+    rays = read_rays(drive, drive.known, first, PlaneMotion())
+    slack_m = comparison.find_slack_m(step.tie)
+    return Survey(plan, RaySight(rays, slack_m), drive.motion)

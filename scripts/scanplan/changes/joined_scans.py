@@ -1,0 +1,194 @@
+"""The scans of several surveys of a floor as those of one, less what later ones have overtaken."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+
+import numpy as np
+
+from scanplan.changes.comparison import Scans
+from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.stale_rays import StalePlaces
+from scanplan.errors import StageError
+from scanplan.plan.floorplan import FloorPlan
+from scanplan.store.registered_scans import RegisteredScans
+from scanplan.types import BoolArray, FloatArray, IntArray, Settings
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """The scans of one survey in the frame of the first, read as those of a `tables.ScanStore` are.
+
+    Attributes
+    ----------
+    name : str
+    own : Scans
+        In its own frame.
+    motion : PlaneMotion
+        To the frame of the first.
+    lift_m : float
+        Up, likewise.
+    floor_m : float
+        Height of the floor in that frame; 0 where heights mean nothing.
+    stale : tuple of StalePlaces
+        What later surveys found changed.
+    """
+
+    name: str
+    own: Scans
+    motion: PlaneMotion
+    lift_m: float
+    floor_m: float
+    stale: tuple[StalePlaces, ...] = ()
+
+    @property
+    def planar(self) -> bool:
+        """Whether the sensor measures in one plane only."""
+        return self.own[0].planar
+
+    @cached_property
+    def known(self) -> RegisteredScans:
+        """The scans of which something is kept, in the frame of the first."""
+        registered = self.own[1]
+        rows = np.searchsorted(registered.scan_ids, np.array(list(self._kept), np.int64))
+        moved = np.eye(4)
+        moved[:2, :2] = self.motion.rotation
+        moved[:3, 3] = self.motion.x_m, self.motion.y_m, self.lift_m
+        # x and y turn with the frame, errors of heading stay as they are
+        turn = np.eye(3)
+        turn[:2, :2] = self.motion.rotation
+        return RegisteredScans(
+            registered.scan_ids[rows],
+            registered.t_ns[rows],
+            moved @ registered.map_from_sensor[rows],
+            turn @ registered.covariance[rows] @ turn.T,
+        )
+
+    @property
+    def n_points(self) -> IntArray:
+        """How many points are kept of each scan of `known`, (n,) int64."""
+        return np.array([kept.sum() for kept in self._kept.values()], np.int64)
+
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
+        wanted = self.known.scan_ids.tolist() if scan_ids is None else list(map(int, scan_ids))
+        for scan_id, xyz_m in self.own[0].scans(wanted):
+            yield scan_id, self._move(xyz_m[self._kept[scan_id]]).astype(np.float32)
+
+    def _move(self, xyz_m: FloatArray) -> FloatArray:
+        xyz_m = xyz_m.astype(float)
+        return np.column_stack([self.motion.move(xyz_m[:, :2]), xyz_m[:, 2] + self.lift_m])
+
+    @cached_property
+    def _kept(self) -> dict[int, BoolArray]:
+        """Which points (n,) of a scan no later survey has overtaken, by scan; none without any."""
+        store, registered = self.own
+        sensors_m = self._move(registered.map_from_sensor[:, :3, 3]) - [0, 0, self.floor_m]
+        scans = store.scans(registered.scan_ids)
+        found = {}
+        for (scan_id, xyz_m), sensor_m in zip(scans, sensors_m, strict=True):
+            is_kept = np.ones(len(xyz_m), bool)
+            if self.stale:
+                ends_m = self._move(xyz_m) - [0, 0, self.floor_m]
+                for places in self.stale:
+                    is_kept &= ~places.find_rays(sensor_m, ends_m, planar=store.planar)
+            if is_kept.any():
+                found[scan_id] = is_kept
+        return found
+
+
+def place_drive(scans: Scans, plan: FloorPlan, motion: PlaneMotion, first: FloorPlan) -> Drive:
+    """Return the scans of a survey on the floor of the first, or under its ceiling.
+
+    Where neither was seen by both, heights are taken as those of one map.
+
+    Parameters
+    ----------
+    plan, first : FloorPlan
+        Of the survey, and of the first.
+    motion : PlaneMotion
+        From the frame of the survey to that of the first.
+    """
+    if scans[0].planar:
+        return Drive(plan.name, scans, motion, 0.0, 0.0)
+    return Drive(plan.name, scans, motion, find_lift_m(plan, first) or 0.0, first.storey_m[0])
+
+
+def find_lift_m(plan: FloorPlan, first: FloorPlan) -> float | None:
+    """Return how far a survey lies below the first; None where nothing level was seen by both."""
+    for level in ("floor_z_m", "ceiling_z_m"):
+        lift_m = getattr(first, level) - getattr(plan, level)
+        if np.isfinite(lift_m):
+            return float(lift_m)
+    return None
+
+
+class JoinedScans:
+    """Scans of several surveys in the frame of the first, read as those of a `ScanStore` are.
+
+    Attributes
+    ----------
+    settings : dict
+        What a plan of them is made with.
+    planar : bool
+    known : RegisteredScans
+        Numbered from 0, survey after survey.
+    sensors_m : dict of int to (3,) float64
+    n_points : (n,) int64
+    """
+
+    def __init__(self, drives: Sequence[Drive], settings: Settings) -> None:
+        self.settings = settings
+        self.planar = drives[0].planar
+        self._drives = drives
+        self._first_ids = np.cumsum([0, *(len(drive.known.scan_ids) for drive in drives)])
+        self.known = RegisteredScans(
+            np.arange(self._first_ids[-1], dtype=np.int32),
+            *(
+                np.concatenate([getattr(drive.known, name) for drive in drives])
+                for name in ("t_ns", "map_from_sensor", "covariance")
+            ),
+        )
+        self.n_points = np.concatenate([drive.n_points for drive in drives])
+        places_m = self.known.map_from_sensor[:, :3, 3]
+        self.sensors_m = dict(zip(self.scan_ids.tolist(), places_m, strict=True))
+
+    @property
+    def scan_ids(self) -> IntArray:
+        """(n,) int32, increasing."""
+        return self.known.scan_ids
+
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
+        wanted = self.scan_ids.tolist() if scan_ids is None else list(map(int, scan_ids))
+        # a file is opened once for those that follow one another
+        for of, ids in groupby(wanted, self._find_drive):
+            drive, numbers = self._drives[of], list(ids)
+            own = [int(drive.known.scan_ids[i - self._first_ids[of]]) for i in numbers]
+            for number, (_, xyz_m) in zip(numbers, drive.scans(own), strict=True):
+                yield number, xyz_m
+
+    def rows(self, scan_ids: IntArray) -> IntArray:
+        """Return the rows (k,) of registered scans."""
+        return np.searchsorted(self.scan_ids, scan_ids)
+
+    def _find_drive(self, scan_id: int) -> int:
+        return int(np.searchsorted(self._first_ids, scan_id, side="right")) - 1
+
+
+def check_alike(surveys: Sequence[tuple[FloorPlan, Scans]]) -> None:
+    """Refuse surveys of which no one plan can be made: planar ones together with others.
+
+    Raises
+    ------
+    StageError
+    """
+    first, *others = surveys
+    for other in others:
+        if other[1][0].planar != first[1][0].planar:
+            flat, solid = (first, other) if first[1][0].planar else (other, first)
+            raise StageError(
+                f"{flat[0].name} and {solid[0].name}: the scanner of the first is planar, that of"
+                " the second is not, so no plan is made of both; compare them by the target changes"
+            )

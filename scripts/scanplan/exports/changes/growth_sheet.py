@@ -1,0 +1,91 @@
+"""The sheet of a plan of several surveys: which of them saw what, and what they found changed."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+from shapely.geometry.base import BaseGeometry
+
+from scanplan.changes.change_words import say_change
+from scanplan.changes.contributions import Contribution
+from scanplan.changes.growth import Grown
+from scanplan.changes.growth_table import summarise_growth
+from scanplan.exports.changes.compared_sheet import (
+    ComparedFacts,
+    Told,
+    compose_compared_sheet,
+    draw_areas,
+)
+from scanplan.exports.sheet import content, title
+from scanplan.exports.sheet.composition import Sheet
+from scanplan.exports.sheet.marks import Mark
+from scanplan.exports.sheet.paper import Page
+from scanplan.geometry import overlays
+from scanplan.plan.floorplan import FloorPlan
+
+_TOLD = ("wall", "opening", "column")
+
+
+def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
+    """Compose the sheet of a plan of several surveys, in the frame of the first."""
+    symbols = [
+        replace(symbol, verify=False, facts={}) for symbol in content.list_symbols(grown.plan)
+    ]
+    told = [
+        Told(say_change(change), change.shape)
+        for step in grown.steps
+        for change in step.changes
+        if change.table in _TOLD and change.is_told
+    ]
+    return compose_compared_sheet(
+        f"{grown.names[-1]} on {', '.join(grown.names[:-1])}",
+        (list(_draw(grown)), symbols),
+        told,
+        [],
+        turn_deg=-grown.plan.main_direction_deg,
+        list_values=lambda page: _list_values(grown, facts, page),
+    )
+
+
+def _draw(grown: Grown) -> Iterator[Mark]:
+    plan = grown.plan
+    walls = {of.number: of for of in grown.contributions if of.table == "wall"}
+    bodies = overlays.unite_areas(plan.bodies)
+    taken: list[BaseGeometry] = [*plan.gaps]
+    # those that fewer surveys saw first, so that joints are drawn as what is known best
+    for kind in ("unchanged", "lately", "stale"):
+        for number, body in zip(plan.walls["wall"].tolist(), plan.bodies, strict=True):
+            if _style(walls[number]) == kind:
+                free = overlays.subtract_areas(body, overlays.unite_areas(taken))
+                yield from draw_areas(kind, free, f"wall-{number}")
+                taken.append(body)
+    rest = overlays.subtract_areas(bodies, overlays.unite_areas(taken))
+    yield from draw_areas("unchanged", rest, "walls")
+    yield from _draw_furniture(plan)
+
+
+def _style(wall: Contribution) -> str:
+    if wall.is_stale:
+        return "stale"
+    return "lately" if wall.is_alone else "unchanged"
+
+
+def _draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
+    shapes = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
+    for number, shape in zip(plan.furniture["furniture"].tolist(), shapes, strict=True):
+        yield from draw_areas("stood", shape, f"furniture-{number}")
+
+
+def _list_values(grown: Grown, facts: ComparedFacts, page: Page) -> list[list[title.Value]]:
+    surveys: Sequence[str] = summarise_growth(grown)[: len(grown.names)]
+    days = " to ".join(dict.fromkeys(filter(None, facts.days)))
+    area_m2 = float(np.sum(grown.plan.rooms["area_m2"]))
+    return [
+        [("Project", facts.project or grown.names[0], 2), ("Drawing", "Plan of surveys", 1)],
+        [("Surveyed", days or "not known", 2), ("Rooms", f"{area_m2:.1f} m²", 1)],
+        [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "of the first", 1)],
+        [("Earliest", surveys[0], 3)],
+        [("Latest", surveys[-1], 3)],
+        [("Software", facts.version or "scanplan", 3)],
+    ]
