@@ -85,6 +85,7 @@ def export_files(
             drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
         ),
         "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin),
+        "openplan": lambda: _format_openplan(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
@@ -119,6 +120,13 @@ def _format_ifc(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
     from scanplan.exports import ifc
 
     return ifc.format_ifc(plan, ids, origin)
+
+
+def _format_openplan(plan: FloorPlan, ids: ElementIds, origin: ModelOrigin) -> str:
+    # scipy besides, as of the regular plan
+    from scanplan.exports.data import openplan
+
+    return openplan.format_openplan(plan, ids, origin)
 
 
 def _write_mask(

@@ -17,6 +17,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
        run.py overlays [COUNT [FIRST SEED]]
+       run.py edits RESULTS TRUTH FOLDER
        run.py growth FOLDER [scans | rooms | extent | glass | TIMES ...]
        run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR | KEY=VALUE ...]
        run.py compare_realistic SCORES SCORES
@@ -81,6 +82,9 @@ is the true one.
 `odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
 scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
 drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
+
+`edits` scores the plan of intel or lab_ipa before and after what a person who knows the floor says
+of it in ten minutes, in the words of the report's page.
 
 `overlays` unites, cuts and parts 100,000 arrangements of areas that rounding makes hard, or as many
 as are said, and fails where an overlay raises or areas do not add up.
@@ -218,6 +222,13 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
+def bench_edits(results: str, truth: str, folder: str) -> None:
+    """A real floor's plan before and after ten minutes with the editor."""
+    import edit_bench
+
+    edit_bench.measure_edits(results, truth, folder)
+
+
 def bench_design(folder: str) -> None:
     """What is told of buildings that were built otherwise than designed."""
     import design_bench
@@ -318,6 +329,7 @@ APART: dict[str, Callable[..., None]] = {
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,
     "overlays": bench_overlays,
+    "edits": bench_edits,
     "growth": bench_growth,
     "pipeline": bench_pipeline,
     "changes": bench_changes,

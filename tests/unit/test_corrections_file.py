@@ -56,6 +56,41 @@ corrections:
     assert (merged.with_m, room.number, room.name) == ((5.0, 2.0), "2.14", "")
 
 
+def test_leaves_things_tapes_and_settled_rooms_are_read(tmp_path):
+    text = """\
+corrections:
+- {element: opening, at: [3, 0], kind: door, swing: [2.5, 0.9]}
+- {element: furniture, action: add, outline: [[0, 0], [2, 0], [2, 1], [0, 1]], kind: column}
+- {element: furniture, at: [5, 5], action: remove}
+- {element: length, action: add, line: [[0, 0], [4, 0]], length_m: 4.012, sigma_m: 0.002}
+- {element: room, at: [1, 2], use: store, by: A. Bee, when: "2026-03-01T09:30:00Z"}
+- {element: room, at: [1, 2], action: settle}
+- {element: wall, at: [9, 9], height_m: 1.2}
+"""
+    door, column, gone, tape, room, settled, wall = read_corrections(written(tmp_path, text))
+    assert door.swing_m == (2.5, 0.9) and column.at_m == (1.0, 0.5)
+    assert column.outline_m == ((0, 0), (2, 0), (2, 1), (0, 1)) and gone.action == "remove"
+    assert (tape.length_m, tape.sigma_m, tape.at_m) == (4.012, 0.002, (2, 0))
+    assert (room.use, room.by, room.when) == ("store", "A. Bee", "2026-03-01T09:30:00Z")
+    assert settled.action == "settle" and wall.height_m == 1.2
+
+
+@pytest.mark.parametrize(
+    ("entry", "fault"),
+    [
+        ("outline: [[0, 0], [2, 0]]", "3 to 100 places"),
+        ("outline: [[0, 0], [2, 0], [1, 0]]", "covers 0 m²"),
+        ("outline: [[0, 0], [2, 0], [1, x]]", "two numbers"),
+        ("outline: [[0, 0], [1000000, 0], [0, 1000000]]", "0.001 to 10000 m²"),
+    ],
+)
+def test_an_outline_that_is_none_is_told(tmp_path, entry, fault):
+    path = written(tmp_path, f"corrections:\n- {{element: furniture, action: add, {entry}}}\n")
+    with pytest.raises(StageError, match="entry 1: ") as told:
+        read_corrections(path)
+    assert fault in str(told.value)
+
+
 def test_geojson_says_the_same(tmp_path):
     geometries = {
         "at": lambda place: {"type": "Point", "coordinates": place},
@@ -83,7 +118,10 @@ def test_geojson_says_the_same(tmp_path):
             "element is 'wal', expected one of check_point",
         ),
         ("{element: wall, at: [1, 2], action: paint}", "action of a wall is 'paint', expected"),
-        ("{element: wall, at: [1, 2]}", "has no kind or line or thickness_m; to change a wall"),
+        (
+            "{element: wall, at: [1, 2]}",
+            "has no kind or line or thickness_m or height_m; to",
+        ),
         ("{element: wall, at: [1, 2], kind: door}", "kind is 'door', expected one of furniture"),
         ("{element: opening, at: [1, 2], width_m: 0}", "width_m is 0, expected 0.05 to 1000 m"),
         ("{element: opening, at: [1, 2], sill_m: 2, lintel_m: 1.5}", "sill_m is not below"),

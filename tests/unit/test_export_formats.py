@@ -13,7 +13,7 @@ def test_every_format_of_the_settings_has_files():
 
 def test_no_two_formats_share_a_file():
     files = export_formats.list_exports([*export_formats.FILES, "presentation", "laz"])
-    assert len(files) == len(set(files)) == 24
+    assert len(files) == len(set(files)) == 25
 
 
 def test_files_of_formats_that_are_not_chosen_are_replaced():

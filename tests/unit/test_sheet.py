@@ -400,6 +400,14 @@ def test_a_doubtful_face_is_drawn_and_counted_unless_its_wall_is():
     assert said[said.index("To verify on site") + 1] == str(len(list_doubts(doubted)))
 
 
+def test_who_corrected_on_site_stands_in_the_title_block():
+    by = [word.text for word in composition.paper_words(composition.compose_sheet(plan()))]
+    assert "Corrected on site by" not in by
+    sheet = composition.compose_sheet(plan(corrected_by="A. Bee, 2026-03-01"))
+    said = [word.text for word in composition.paper_words(sheet)]
+    assert said[said.index("Corrected on site by") + 1] == "A. Bee, 2026-03-01"
+
+
 def test_the_sides_of_a_wall_that_a_person_kept_are_in_no_doubt():
     faces = floorplan_making.faces()
     faces["verify"] = faces["wall"] == 5

@@ -189,7 +189,7 @@ def test_formats_without_their_library_are_left_out_of_the_defaults_and_told(mon
     monkeypatch.setattr(export_formats, "find_spec", lambda library: None)
     defaults = read_defaults(ROOT / "config/config.yaml", SCHEMA)
     assert defaults["plan"]["export"]["formats"] == [
-        *("glb", "gpkg", "imdf", "csv", "json", "tum", "masks", "bcf", "presentation")
+        *("glb", "gpkg", "imdf", "csv", "json", "tum", "masks", "bcf", "openplan", "presentation")
     ]
     told = export_formats.tell_lacking()
     files = ("plan/plan.ifc", "plan/presentation.ifc")

@@ -223,7 +223,9 @@ def _filling(product: Any) -> str:
 
 
 def _fillers(product: Any) -> list[Any]:
-    return [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
+    fillings = [f.RelatedBuildingElement for f in getattr(product, "HasFillings", None) or ()]
+    # some programs remove a door, and not its relation
+    return [filling for filling in fillings if filling is not None]
 
 
 def _host(product: Any) -> str:

@@ -123,6 +123,10 @@ class FloorPlan:
         How many corrections by hand are carried out in it, removals with them.
     unmatched_corrections : sequence of str
         Of each that is not, why.
+    corrected_by : str
+        Who said so, and the day of the last; empty where that is not known.
+    taped_m : sequence of (float, float, float)
+        Of each taped length what is drawn, what was taped, and the standard deviation of that.
     doubted : doubts.Doubts
         What speaks against all of the plan.
     nearly : sequence of plan_wall.Nearly
@@ -144,6 +148,8 @@ class FloorPlan:
     georeference: GeoReference | None = None
     n_corrections: int = 0
     unmatched_corrections: Sequence[str] = ()
+    corrected_by: str = ""
+    taped_m: Sequence[Sequence[float]] = ()
     doubted: Doubts = NO_DOUBT
     nearly: Sequence[Nearly] = ()
 

@@ -46,9 +46,9 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     def read(table: str, schema: schemas.Schema) -> Columns:
         return tables.read_table(files[table], schema, allow_empty=table != "faces")
 
+    notes = tables.read_notes(files["free"], schemas.FREE)
     floor_z_m, ceiling_z_m = (
-        float(tables.read_note(files["free"], schemas.FREE, note) or "nan")
-        for note in ("floor_z_m", "ceiling_z_m")
+        float(notes.get(note) or "nan") for note in ("floor_z_m", "ceiling_z_m")
     )
     parts = {
         "faces": read("faces", schemas.FACES),
@@ -68,7 +68,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
     wanted: dict[str, Columns] = {}
     if "furniture" in files:
         wanted["furniture"] = read("furniture", schemas.FURNITURE)
-    reference = tables.read_note(files["free"], schemas.FREE, "georeference")
+    reference = notes.get("georeference")
     return make_floorplan(
         parts,
         floor_z_m,
@@ -76,14 +76,14 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         name,
         **wanted,
         georeference=GeoReference(**json.loads(reference)) if reference else None,
-        n_corrections=int(tables.read_note(files["free"], schemas.FREE, "n_corrections") or 0),
-        unmatched_corrections=json.loads(
-            tables.read_note(files["free"], schemas.FREE, "unmatched_corrections") or "[]"
-        ),
+        n_corrections=int(notes.get("n_corrections", 0)),
+        unmatched_corrections=json.loads(notes.get("unmatched_corrections", "[]")),
+        corrected_by=notes.get("corrected_by", ""),
+        taped_m=json.loads(notes.get("lengths", "[]")),
         doubted=doubted,
         nearly=[
             Nearly(of["kind"], np.array(of["ends_m"]), of["p"])
-            for of in json.loads(tables.read_note(files["free"], schemas.FREE, "nearly") or "[]")
+            for of in json.loads(notes.get("nearly", "[]"))
         ],
         **assumed_m,
     )

@@ -6,8 +6,9 @@ No heavy imports: this runs while the workflow is being parsed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import datetime
+from itertools import pairwise
 from typing import Any
 
 from scanplan.errors import StageError
@@ -19,11 +20,19 @@ SIZES_M = {
     "width_m": (0.05, 1000.0),
     "sill_m": (0.0, 100.0),
     "lintel_m": (0.1, 100.0),
+    "height_m": (0.1, 100.0),
+    "length_m": (0.05, 1000.0),
+    "sigma_m": (0.0005, 1.0),
 }
 """Least and most of sizes: of a wall's thickness from a sheet of glass to a fortress, of an
-opening's width as of a line, of heights above the floor up to the highest halls there are."""
+opening's width as of a line, of heights above the floor up to the highest halls there are; of a
+taped length as of a line, and of its standard deviation from what a steel tape is read to."""
 LENGTH_M = (0.05, 1000.0)
 """Of a line: from a pier beside a door to the longest halls there are."""
+CORNERS = (3, 100)
+"""Of an outline: more are no shape that a person draws."""
+AREA_M2 = (0.001, 10000.0)
+"""Of an outline: from a pipe to the stands of an arena."""
 FARTHEST_M = 1e8
 """Of a place: all projected systems of the Earth lie within, with a zone before the easting."""
 _LONGEST_MOMENT = 40
@@ -61,9 +70,10 @@ def check_kind(entry: str, value: Any, kinds: tuple[str, ...]) -> str:
     return value
 
 
-def find_middle(start_m: Place, end_m: Place) -> Place:
-    """Return the place between two."""
-    return (start_m[0] + end_m[0]) / 2, (start_m[1] + end_m[1]) / 2
+def find_middle(places_m: Sequence[Place]) -> Place:
+    """Return the mean of places."""
+    x_m, y_m = (math.fsum(of) / len(places_m) for of in zip(*places_m, strict=True))
+    return x_m, y_m
 
 
 def _check_place(entry: str, key: str, value: Any) -> Place:
@@ -84,6 +94,21 @@ def _check_line(entry: str, key: str, value: Any) -> tuple[Place, Place]:
         limit = f"expected {shortest_m:g} to {longest_m:g} m"
         raise StageError(f"{entry}: {key} is {length_m:g} m long, {limit}; give it in metres")
     return start_m, end_m
+
+
+def _check_outline(entry: str, key: str, value: Any) -> tuple[Place, ...]:
+    least, most = CORNERS
+    if not isinstance(value, list) or not least <= len(value) <= most:
+        expected = f"expected {least} to {most} places [[x, y], [x, y], ...]"
+        raise StageError(f"{entry}: {key} is {value!r}, {expected}")
+    corners_m = [_check_place(entry, f"a corner of {key}", place) for place in value]
+    turns_m2 = (a[0] * b[1] - a[1] * b[0] for a, b in pairwise([*corners_m, corners_m[0]]))
+    area_m2 = abs(math.fsum(turns_m2)) / 2
+    least_m2, most_m2 = AREA_M2
+    if not least_m2 <= area_m2 <= most_m2:
+        limit = f"expected {least_m2:g} to {most_m2:g} m²"
+        raise StageError(f"{entry}: {key} covers {area_m2:g} m², {limit}; give it in metres")
+    return tuple(corners_m)
 
 
 def _check_size(entry: str, key: str, value: Any) -> float | None:
@@ -122,6 +147,7 @@ _CHECKS: dict[str, Callable[[str, str, Any], Any]] = {
     **dict.fromkeys(("name", "number", "use", "by"), _check_text),
     **dict.fromkeys(SIZES_M, _check_size),
     "line": _check_line,
+    "outline": _check_outline,
     "crs": _check_crs,
     "when": _check_moment,
 }

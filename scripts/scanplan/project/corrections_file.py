@@ -24,8 +24,8 @@ CORRECTIONS_FILES = ("corrections.yaml", "corrections.geojson")
 _KEYS = {
     ("wall", "keep"): (("at",), ()),
     ("wall", "remove"): (("at",), ()),
-    ("wall", "add"): (("line",), ("thickness_m",)),
-    ("wall", "change"): (("at",), ("kind", "line", "thickness_m")),
+    ("wall", "add"): (("line",), ("thickness_m", "height_m")),
+    ("wall", "change"): (("at",), ("kind", "line", "thickness_m", "height_m")),
     ("face", "keep"): (("at",), ()),
     ("face", "remove"): (("at",), ()),
     ("opening", "keep"): (("at",), ()),
@@ -37,7 +37,11 @@ _KEYS = {
     ("room", "change"): (("at",), ("name", "number", "use")),
     ("room", "split"): (("line",), ()),
     ("room", "merge"): (("at", "with"), ()),
-    ("furniture", "change"): (("at", "kind"), ()),
+    ("room", "settle"): (("at",), ()),
+    ("furniture", "add"): (("outline",), ("kind",)),
+    ("furniture", "change"): (("at",), ("kind", "outline")),
+    ("furniture", "remove"): (("at",), ()),
+    ("length", "add"): (("line", "length_m"), ("sigma_m",)),
     ("reference_point", "add"): (("at", "world", "crs"), ()),
     ("check_point", "add"): (("at", "world", "crs"), ()),
 }
@@ -47,15 +51,21 @@ _OF_ANY = ("when", "by")
 """Keys of any entry: the moment at which it was said, and who said it."""
 POINTS = ("reference_point", "check_point")
 """What says where the plan lies, and what is held against that: no elements of it."""
+LENGTH = "length"
+"""What was taped between two places: no element, either."""
+SETTLE = "settle"
+"""Of a room in which nothing more is to be checked, whatever else is said of it."""
 OUTLINES = ("split", "merge")
 """What is done to the outlines of rooms, before anything is said of the rooms that it leaves."""
 _KINDS = {
     "wall": ("furniture", "column"),
     "opening": ("door", "sliding door", "window", "passage", "glass"),
-    "furniture": ("toilet", "basin", "bath", "shower", "sink", "cooker", "stairs"),
+    "furniture": (
+        *("furniture", "column", "toilet", "basin", "bath", "shower", "sink", "cooker", "stairs"),
+    ),
 }
-"""What a person may call an opening, what is drawn as a wall, and a piece of furniture."""
-_PLACES = ("at", "line", "swing", "with", "world")
+"""What a person may call an opening, what is drawn as a wall, and what stands about."""
+_PLACES = ("at", "line", "swing", "with", "world", "outline")
 """Keys of places, in metres."""
 _DIGITS = 12
 """Of a digest of recordings: no two surveys that a person has are of the same."""
@@ -72,22 +82,22 @@ class Correction:
     entry : str
         File and number of the entry, for messages.
     element : str
-        wall, face, opening, room, furniture, or one of `POINTS`.
+        wall, face, opening, room, furniture, `LENGTH`, or one of `POINTS`.
     action : str
-        keep, remove, add, change, or one of `OUTLINES`.
+        keep, remove, add, change, `SETTLE`, or one of `OUTLINES`.
     at_m : (float, float)
         A place in the map frame on the element; of what is added, and of the line that parts a
         room, the middle.
     line_m : two (float, float) or None
-        Ends of what is added, of where an element is moved to, or of what parts a room.
+        Ends of what is added or taped, of where an element is moved to, or of what parts a room.
     kind : str
         Of an opening or a piece of furniture, or what something is that is no wall.
     name, number, use : str
         Of a room.
     swing_m : (float, float) or None
         A place beside a door, on the side that it opens to, nearer to its hinges.
-    thickness_m : float or None
-        Of a wall.
+    thickness_m, height_m : float or None
+        Of a wall, from the floor on.
     width_m, sill_m, lintel_m : float or None
         Of an opening; heights are above the floor.
     with_m : (float, float) or None
@@ -96,6 +106,12 @@ class Correction:
         East and north of a reference or check point.
     crs : str
         In which these are, such as EPSG:25832.
+    outline_m : tuple of (float, float) or None
+        Corners of what stands about.
+    length_m, sigma_m : float or None
+        Taped between the ends of `line_m`, and its standard deviation.
+    when, by : str
+        The moment at which it was said, and who said it; empty where not known.
     """
 
     entry: str
@@ -109,12 +125,18 @@ class Correction:
     use: str = ""
     swing_m: tuple[float, float] | None = None
     thickness_m: float | None = None
+    height_m: float | None = None
     width_m: float | None = None
     sill_m: float | None = None
     lintel_m: float | None = None
     with_m: tuple[float, float] | None = None
     world_m: tuple[float, float] | None = None
     crs: str = ""
+    outline_m: tuple[tuple[float, float], ...] | None = None
+    length_m: float | None = None
+    sigma_m: float | None = None
+    when: str = ""
+    by: str = ""
 
 
 def name_survey(name: str, made_of: str) -> str:
@@ -223,7 +245,7 @@ def _check_entry(entry: str, values: Any) -> Correction:
     keys = (*needed, *possible)
     unknown = sorted(map(str, set(values) - {"element", "action", *keys, *_OF_ANY}))
     missing = [key for key in needed if key not in values]
-    if action == "change" and possible and not any(key in values for key in possible):
+    if action == "change" and not any(key in values for key in possible):
         missing.append(" or ".join(possible))
     if unknown or missing:
         fault = f"has {', '.join(unknown)}" if unknown else f"has no {', '.join(missing)}"
@@ -237,17 +259,19 @@ def _check_entry(entry: str, values: Any) -> Correction:
         if key in values
     }
     if "at" not in read:
-        read["at"] = correction_values.find_middle(*read["line"])
+        read["at"] = correction_values.find_middle(read.get("line") or read["outline"])
     if read.get("sill_m") is not None and read["sill_m"] >= (read.get("lintel_m") or math.inf):
         raise StageError(f"{entry}: sill_m is not below lintel_m; heights are above the floor")
     fields: dict[str, Any] = {f"{key}_m" if key in _PLACES else key: read[key] for key in read}
-    return Correction(entry, element, action, **{k: fields[k] for k in fields if k not in _OF_ANY})
+    return Correction(entry, element, action, **fields)
 
 
 def _check_places(corrections: Iterable[Correction]) -> None:
     first: dict[tuple[Any, ...], Correction] = {}
     for correction in corrections:
-        place = (correction.element, correction.action in OUTLINES, correction.at_m)
+        is_of_itself = correction.action in (*OUTLINES, SETTLE)
+        group = correction.action if is_of_itself else ""
+        place = (correction.element, group, correction.at_m)
         other = first.setdefault(place, correction)
         if other is not correction:
             fault = f"{other.entry.rpartition(': ')[2]} is of the same place"

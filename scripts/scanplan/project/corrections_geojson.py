@@ -47,8 +47,14 @@ def _is_feature(feature: Mapping[str, Any]) -> bool:
 
 
 def _of_feature(feature: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entry that a feature stands for: a point is a place, a line what is added."""
+    """Return the entry that a feature stands for.
+
+    A point is a place, a line what is added, a polygon the outline of what stands about.
+    """
     properties = {k: v for k, v in feature["properties"].items() if v is not None}
     geometry = feature["geometry"]
-    key = "at" if geometry.get("type") == "Point" else "line"
-    return {**properties, key: geometry.get("coordinates")}
+    corners = geometry.get("coordinates")
+    if geometry.get("type") == "Polygon" and isinstance(corners, list) and len(corners) == 1:
+        ring = corners[0]
+        return {**properties, "outline": ring[:-1] if isinstance(ring, list) else ring}
+    return {**properties, "at" if geometry.get("type") == "Point" else "line": corners}

@@ -25,6 +25,7 @@ FILES = {
     },
     "editable": {"editable": "plan/presentation.ifc"},
     "bcf": {"bcf": "plan/doubts.bcf"},
+    "openplan": {"openplan": "plan/plan.openplan3d.json"},
 }
 """What the stage `export_files` writes of each format, by what it is."""
 PRESENTATION = {

@@ -16,6 +16,7 @@ _WORDS = {
     "keepout.pgm": "where a robot keeps out (nav2)",
     "speed.pgm": "where a robot is slow (nav2)",
     "doubts.bcf": "doubts for model viewers (BCF)",
+    "plan.openplan3d.json": "project to edit (openPlan3D)",
     "presentation.dxf": "its CAD (DXF)",
     "plan.dxf": "CAD (DXF)",
     "plan.ifc": "building model (IFC)",

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.plan import floorplan
+from scanplan.plan.taped_lengths import fit_scale
 from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
@@ -57,6 +58,15 @@ def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
     ]
 
 
+def state_lengths(plan: floorplan.FloorPlan) -> str:
+    """Return how far what was taped is from what is drawn, and what scale follows of all."""
+    off = ", ".join(f"{1000 * (drawn - taped):+.0f}" for drawn, taped, _ in plan.taped_m)
+    counted = floorplan.say_count(len(plan.taped_m), "taped length")
+    scale, sigma = fit_scale(plan.taped_m)
+    by_tape = f"{100 * (scale - 1):+.2f} % ± {100 * sigma:.2f} %"
+    return f"drawn less taped, of {counted}: {off} mm; by tape the plan would be {by_tape} longer"
+
+
 def state_reference(reference: floorplan.GeoReference) -> str:
     """Return how far each control and each check point is off where a plan is laid onto Earth."""
 
@@ -89,6 +99,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     counted = ", ".join(floorplan.say_count(len(of), kind) for kind, of in by_kind.items())
     reference = plan.georeference
     placed = [] if reference is None else [("on Earth", state_reference(reference))]
+    placed += [("taped", state_lengths(plan))] if plan.taped_m else []
     return [
         ("recorded", recorded),
         ("duration", f"{(t_s[-1] - t_s[0]) / 60:.1f} min"),

@@ -58,8 +58,8 @@ const choices = (() => {
   }
 
   // sizes in centimetres, as on a tape; a name is taken when its field is left, too
-  const sizes = { wall: { thickness_m: "Thickness" }, opening: { width_m: "Width", sill_m: "Sill", lintel_m: "Top" }, room: {}, face: {} };
-  const limits = { thickness_m: [1, 300], width_m: [5, 100000], sill_m: [0, 10000], lintel_m: [10, 10000] };
+  const sizes = { wall: { thickness_m: "Thickness", height_m: "Height" }, opening: { width_m: "Width", sill_m: "Sill", lintel_m: "Top" }, room: {}, face: {} };
+  const limits = { thickness_m: [1, 300], width_m: [5, 100000], sill_m: [0, 10000], lintel_m: [10, 10000], height_m: [10, 10000] };
   function fields(element) {
     const [kind] = element.split(" ");
     const entry = edits.entryOf(element) ?? {};
@@ -74,7 +74,7 @@ const choices = (() => {
       label.append(input);
       form.append(label);
     }
-    for (const [name, words] of kind === "room" ? [["name", "Name"], ["number", "Number"]] : []) {
+    for (const [name, words] of kind === "room" ? [["name", "Name"], ["number", "Number"], ["use", "Used as"]] : []) {
       const label = make("label", words);
       const input = make("input", "", { type: "text", maxlength: 80, name, autocomplete: "off" });
       input.value = entry[name] ?? "";
@@ -82,29 +82,30 @@ const choices = (() => {
       label.append(input);
       form.append(label);
     }
-    form.addEventListener("submit", (event) => {
-      event.preventDefault();
-      form.contains(document.activeElement) && document.activeElement.blur();
-    });
+    // a form of several fields is not sent by Enter
+    form.addEventListener("keydown", (event) => event.key === "Enter" && event.target.blur());
+    form.addEventListener("submit", (event) => event.preventDefault());
     return form.children.length ? [form] : [];
   }
   const right = (element, then, words = "✓ Right as it is") =>
     button(words, () => { edits.change(element, { action: "keep" }); then(); }, { class: "right" });
 
-  const nouns = { keep: "is right", remove: "is not there" };
+  const nouns = { keep: "is right", remove: "is not there", settle: "needs no more checks" };
   const gone = { opening: "is wall", room: "is outside" };
   function describe(entry) {
-    const { element, action, kind, line, thickness_m, width_m, sill_m, lintel_m, name, number } = entry;
+    const { element, action, kind, line, thickness_m, width_m, sill_m, lintel_m, height_m, name, number, use } = entry;
     if (element.endsWith("_point")) return element.replace("_", " ");
     const where = edits.elementOf(entry) ?? element;
     const words = where.startsWith("room ") ? roomName(where) : where;
+    if (element === "length") return `Taped ${entry.length_m.toFixed(3)} m`;
+    if (action === "settle") return `${edits.nearest("room", entry.at) ? roomName(edits.nearest("room", entry.at)) : "A room"} ${nouns.settle}`;
     if (action === "add") return `New ${kind ?? element}`;
     const named = (place) => (edits.nearest("room", place) ? roomName(edits.nearest("room", place)) : "a room");
     if (action === "merge") return `${named(entry.at)} and ${named(entry.with)} are one`;
     if (action === "split") return `${named(edits.middle(line))} is two rooms`;
     const cm = (text, m) => m !== undefined && `${text} ${Number((100 * m).toFixed(1))} cm`;
     const parts = [(action === "remove" && gone[element]) || nouns[action], kind && `is ${kinds[kind] ?? (kind === "column" ? "a column" : kind)}`, line && !action && "moved", cm("thickness", thickness_m),
-      cm("width", width_m), cm("sill", sill_m), cm("top", lintel_m), name && `is ${name}`, number && `has number ${number}`];
+      cm("width", width_m), cm("sill", sill_m), cm("top", lintel_m), cm("height", height_m), entry.swing && "opens as shown", use && `is used as ${use}`, name && `is ${name}`, number && `has number ${number}`];
     const said = parts.filter(Boolean).join(", ");
     const subject = name || number ? where : words;
     return `${subject[0].toUpperCase()}${subject.slice(1)} ${said}`;

@@ -35,6 +35,11 @@
     const width = wall && edits.partOf(wall) ? thickness(wall) : thin;
     if (part) draw("solid", shape(element), width);
     if (entry.action === "remove") return;
+    if (entry.swing) {
+      const jambs = entry.line ?? edits.lineOf(element);
+      const far = ([x, y]) => Math.hypot(x - entry.swing[0], y - entry.swing[1]);
+      draw("leaf", trace([jambs[far(jambs[0]) < far(jambs[1]) ? 0 : 1], entry.swing]));
+    }
     const line = entry.line ?? (entry.width_m ? edits.widen(edits.lineOf(element), entry.width_m) : null);
     const d = line ? trace(line) : shape(element);
     draw("cover", d, width + 0.04);
@@ -63,7 +68,12 @@
       relabel(element, [entry.number, entry.name].filter(Boolean).join(" "));
     }
   }
-  const drawers = { wall: drawWall, opening: drawOpening, room: drawRoom };
+  // what stands about, what was taped, and how leaves stand open
+  function drawThing(entry, element, number) {
+    if (entry.outline) draw("thing", `${trace(entry.outline)}Z`, 0, { "data-entry": number });
+  }
+  const drawTape = (entry, element, number) => draw("taped", trace(entry.line), 0, { "data-entry": number });
+  const drawers = { furniture: drawThing, length: drawTape, wall: drawWall, opening: drawOpening, room: drawRoom };
 
   function redraw() {
     group.replaceChildren();
@@ -92,7 +102,7 @@
       ticks.append(tick);
     }
     for (const entry of edits.gone()) {
-      const place = entry.line ? edits.middle(entry.line) : entry.at;
+      const place = entry.at ?? edits.middle(entry.line ?? [entry.outline[0], entry.outline[2]]);
       const note = svg("text", { x: place[0], y: -place[1] }, "taken back");
       group.append(note);
     }

@@ -20,8 +20,8 @@ const edits = (() => {
   // who said it, and when, makes no other entry of it
   const said = remember((entry) => JSON.stringify(Object.entries(entry).filter(([name]) => name !== "when" && name !== "by").sort()));
   const has = (list, entry) => list.some((other) => said(other) === said(entry));
-  const isOutline = (entry) => entry.action === "split" || entry.action === "merge";
-  const identify = (entry) => JSON.stringify([entry.element, isOutline(entry), entry.at ?? entry.line]);
+  const isOutline = (entry) => ["split", "merge", "settle"].includes(entry.action);
+  const identify = (entry) => JSON.stringify([entry.element, isOutline(entry) && entry.action, entry.at ?? entry.line ?? entry.outline]);
 
   function replace(list, { before, after }) {
     const at = before ? list.findIndex((entry) => said(entry) === said(before)) : -1;

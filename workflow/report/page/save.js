@@ -61,7 +61,7 @@
     const words = line.replace(/("(?:[^"\\]|\\.)*")|([{,[]\s*)([A-Za-z_]\w*)(?=\s*:)|(:\s*)([A-Za-z_][^,{}[\]"]*?)(?=\s*[,}])/g,
       (all, quoted, before, key, colon, value) => quoted ?? (key ? `${before}"${key}"` : `${colon}"${value}"`));
     const entry = JSON.parse(words);
-    if (typeof entry.element !== "string" || !(Array.isArray(entry.at) || Array.isArray(entry.line))) throw new Error("no entry");
+    if (typeof entry.element !== "string" || !["at", "line", "outline"].some((key) => Array.isArray(entry[key]))) throw new Error("no entry");
     return entry;
   }
   function read(text) {

@@ -141,6 +141,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Frame", f"{facts.frame or 'map'}, {turn}; {north}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
+        *([[("Corrected on site by", plan.corrected_by, 3)]] if plan.corrected_by else []),
         [("Verdict", _state_verdict(plan, page.locale), 3)],
     ]
     yield from draw_block(page, rows)

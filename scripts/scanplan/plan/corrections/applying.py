@@ -7,9 +7,11 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan.corrections import added, changed, named, outlines
+from scanplan.plan import floorplan
+from scanplan.plan.corrections import added, changed, named, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
-from scanplan.project.corrections_file import OUTLINES, POINTS, Correction
+from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
+from scanplan.store import schemas
 from scanplan.types import FloatArray
 
 SAID = {
@@ -17,10 +19,18 @@ SAID = {
     "keep": "kept by hand",
     "change": "changed by hand",
     "add": "added by hand",
+    "settle": "checked by hand",
+    "split": "changed by hand",
+    "merge": "changed by hand",
 }
-"""What column `corrected` says of an element."""
+"""What column `corrected` says of an element, with who said it, and on which day."""
+_TAPE_M = 0.005
+"""ASSUME of a taped length without a standard deviation: what a tape sags, and its ends are off."""
+_OFF = 3.0
+"""Standard deviations by which a taped length is off that is told."""
 
-
+_ON_LINE_M = 0.01  # what rounding leaves between a line and the passage that it became
+_DAY = 10  # characters of a moment: its year, month and day
 _FARTHEST_M = 100.0
 """From the plan to a wall that is added: a part of the building that no scan shows is nearer."""
 
@@ -36,19 +46,22 @@ class Outcome:
         Of each that matches nothing, why.
     told : list of str
         What else follows from one.
+    lengths_m : list of (float, float, float)
+        Of each taped length what is drawn, what was taped, and the standard deviation of that.
     """
 
     n_applied: int = 0
     unmatched: list[str] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
+    lengths_m: list[tuple[float, float, float]] = field(default_factory=list)
 
 
 def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outcome:
     """Carry corrections out on the rows of a plan, in their order, rooms last.
 
-    Walls and openings are those nearest to the place of an entry, within reach, rooms those that
-    it is in. Numbers stay what they were. With a wall go its faces, its openings and its evidence;
-    rooms keep their outlines, but for those that are parted or one.
+    Walls, openings and furniture are those nearest to the place of an entry, within reach, rooms
+    those that it is in. Numbers stay what they were. With a wall go its faces, its openings and
+    its evidence; rooms keep their outlines, but for those that are parted or one.
 
     Parameters
     ----------
@@ -64,17 +77,24 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         nothing is left of the plan.
     """
     outcome = Outcome()
-    said = [correction for correction in corrections if correction.element not in POINTS]
-    of_rooms = [c for c in said if c.element == "room" and c.action not in OUTLINES]
+    said = [c for c in corrections if c.element not in (*POINTS, LENGTH)]
+    of_rooms = [c for c in said if c.element == "room" and c.action not in (*OUTLINES, SETTLE)]
     _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
     for correction in said:
         if correction.action == "add":
             _add(rows, correction, outcome)
     # walls are what parts them, and names are of the rooms that are left
+    pending: list[Correction] = []
     for correction in said:
         if correction.action in OUTLINES:
-            _draw_outline(rows, correction, outcome)
+            _draw_outline(rows, correction, pending, outcome)
+    outcome.unmatched += [
+        _tell_outline(correction, "does not part the room from wall to wall")
+        for correction in pending
+    ]
     _apply_found(rows, of_rooms, outcome)
+    _apply_found(rows, [c for c in said if c.action == SETTLE], outcome)
+    _check_lengths(rows, [c for c in corrections if c.element == LENGTH], outcome)
     if not rows.faces:
         raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
     return outcome
@@ -109,7 +129,7 @@ def _find(rows: PlanRows, correction: Correction) -> Row | None:
     if correction.element == "room":
         return rows.room_at(place)
     if correction.element == "furniture":
-        return named.find_piece(rows, place)
+        return things.find_thing(rows, place)
     return added.find_nearest(rows.of(correction.element), place)
 
 
@@ -123,11 +143,12 @@ def _tell_unmatched(correction: Correction) -> str:
 
 def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> str | None:
     """Carry out what is said of a row; return why it was not, if so."""
+    said = state_said(correction)
     if correction.element == "face":
         act = changed.keep_face if correction.action == "keep" else changed.remove_face
-        return act(rows, row, SAID[correction.action])
-    if correction.element == "furniture":
-        row["named"] = correction.kind
+        return act(rows, row, said)
+    if correction.action == SETTLE:
+        things.settle_room(rows, row, said)
         return None
     is_change = correction.action == "change"
     if is_change and (fault := _CHANGES[correction.element](rows, row, correction)):
@@ -135,11 +156,19 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
     if correction.action == "remove" or (correction.element == "wall" and correction.kind):
         _remove(rows, correction, row, outcome)
         return None
-    row["corrected"] = SAID[correction.action]
-    # what a person has looked at needs no other to verify it
-    row |= {"verify": False} if "verify" in row else {}
-    row |= {name: "" for name in ("about", "doubt") if name in row}
+    if correction.element != "furniture":
+        things.leave_doubt(row, said)
     return None
+
+
+def state_said(correction: Correction) -> str:
+    """Return what column `corrected` says of what an entry is of.
+
+    >>> state_said(Correction("", "wall", "keep", (0, 0), by="A. Bee", when="2026-03-01T09:30:00Z"))
+    'kept by hand, A. Bee, 2026-03-01'
+    """
+    day = correction.when[:_DAY]
+    return ", ".join(filter(None, [SAID[correction.action], correction.by, day]))
 
 
 def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
@@ -147,17 +176,62 @@ def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
     room["use"] = correction.use or room["use"]
 
 
-def _draw_outline(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
-    """Part a room, or join two."""
+def _change_thing(rows: PlanRows, thing: Row, correction: Correction) -> None:
+    if correction.outline_m is not None:
+        thing |= things.draw_columns(shapely.Polygon(correction.outline_m))
+    if correction.kind in schemas.FIXTURES:
+        thing["named"] = correction.kind
+    elif correction.kind:
+        thing |= {"kind": correction.kind, "named": ""}
+
+
+def _check_lengths(rows: PlanRows, taped: Sequence[Correction], outcome: Outcome) -> None:
+    """Hold the plan against what was taped; tell what is off, and what scale follows of all."""
+    for correction in taped:
+        taped_m, sigma_m = correction.length_m or 0.0, correction.sigma_m or _TAPE_M
+        line_m = np.array(correction.line_m)
+        drawn_m, off = things.tell_length(rows, line_m, taped_m, sigma_m)
+        outcome.lengths_m.append((drawn_m, taped_m, sigma_m))
+        outcome.n_applied += 1
+        if abs(off) > _OFF:
+            by = f"{drawn_m:.3f} m are drawn where {taped_m:.3f} m were taped"
+            remedy = "tape it again, or move the wall that is wrong"
+            outcome.told.append(f"{correction.entry}: {by}, {abs(off):.1f} sigma apart; {remedy}")
+
+
+def _draw_outline(
+    rows: PlanRows, correction: Correction, pending: list[Correction], outcome: Outcome
+) -> None:
+    """Part a room, or join two; a line that parts none waits for one with which it does."""
     if correction.action == "split":
-        fault = outlines.split_room(rows, np.array(correction.line_m), SAID["change"])
+        waiting_m = [np.array(other.line_m) for other in pending]
+        line_m = np.array(correction.line_m)
+        fault = outlines.split_room(rows, line_m, state_said(correction), waiting_m)
+        if fault is None:
+            n_waiting = len(pending)
+            pending[:] = [other for other in pending if not _is_drawn(rows, other)]
+            outcome.n_applied += n_waiting - len(pending)
+        elif outlines.find_parted(rows, line_m) is not None:
+            pending.append(correction)
+            return
     else:
         places_m = np.array(correction.at_m), np.array(correction.with_m)
-        fault = outlines.merge_rooms(rows, *places_m, SAID["change"])
+        fault = outlines.merge_rooms(rows, *places_m, state_said(correction))
     outcome.n_applied += fault is None
     if fault:
-        x_m, y_m = correction.at_m
-        outcome.unmatched.append(f"{correction.entry}: ({x_m:g}, {y_m:g}) {fault}: not applied")
+        outcome.unmatched.append(_tell_outline(correction, fault))
+
+
+def _is_drawn(rows: PlanRows, split: Correction) -> bool:
+    """Return whether a line that parts a room is a passage of the plan."""
+    middle = shapely.Point(split.at_m)
+    passages = [row for row in rows.openings if row["wall"] < 0]
+    return any(floorplan.draw_axis(row).distance(middle) < _ON_LINE_M for row in passages)
+
+
+def _tell_outline(correction: Correction, fault: str) -> str:
+    x_m, y_m = correction.at_m
+    return f"{correction.entry}: ({x_m:g}, {y_m:g}) {fault}: not applied"
 
 
 def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) -> None:
@@ -165,7 +239,7 @@ def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
     if correction.element == "opening":
         wall = added.close_opening(rows, row)
         if wall is not None:
-            wall["corrected"] = wall["corrected"] or SAID["change"]
+            wall["corrected"] = wall["corrected"] or state_said(correction)
     rows.drop(correction.element, number)
     if correction.element == "wall":
         lost = [opening["opening"] for opening in rows.openings if opening["wall"] == number]
@@ -177,10 +251,20 @@ def _remove(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
 
 
 def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
-    line_m = np.array(correction.line_m)
-    if correction.element == "wall":
+    said = state_said(correction)
+    line_m = np.array(correction.line_m or correction.outline_m)
+    if correction.element in ("wall", "furniture"):
         _check_near(rows, correction, line_m)
-        added.add_wall(rows, line_m, correction.thickness_m, SAID["add"])
+    if correction.element == "furniture":
+        is_named = correction.kind in schemas.FIXTURES
+        kind = schemas.PIECE if is_named else correction.kind or schemas.PIECE
+        things.add_thing(rows, shapely.Polygon(line_m), kind)
+        rows.furniture[-1]["named"] = correction.kind if is_named else ""
+        outcome.n_applied += 1
+        return
+    if correction.element == "wall":
+        added.add_wall(rows, line_m, correction.thickness_m, said)
+        changed.set_height(rows, rows.walls[-1], correction.height_m)
         outcome.n_applied += 1
         return
     wall = added.find_nearest(rows.walls, shapely.Point(correction.at_m))
@@ -191,7 +275,7 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
     if fault := added.explain_misfit(wall, line_m):
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
         raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
-    added.add_opening(rows, wall, line_m, correction.kind, SAID["add"])
+    added.add_opening(rows, wall, line_m, correction.kind, said)
     if fault := named.hang_leaf(rows, rows.openings[-1], correction):
         raise StageError(f"{correction.entry}: the opening {fault}")
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
@@ -200,17 +284,19 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
 
 
 def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> None:
-    """Refuse a wall far from all others: the sheet would be all but empty, its scale 1:50000."""
+    """Refuse what is far from all walls: the sheet would be all but empty, its scale 1:50000."""
     faces_m = np.array([[face[end] for end in added.ENDS] for face in rows.faces]).reshape(-1, 2)
     low_m, high_m = faces_m.min(axis=0), faces_m.max(axis=0)
     off_m = float(np.max(np.maximum(low_m - line_m, line_m - high_m)))
     if off_m > _FARTHEST_M:
-        fault = f"the wall lies {off_m:.0f} m beyond the plan, at most {_FARTHEST_M:.0f} m are"
-        raise StageError(f"{correction.entry}: {fault} drawn; give `line` in metres of the map")
+        beyond = f"the {correction.element} lies {off_m:.0f} m beyond the plan"
+        fault = f"{beyond}, at most {_FARTHEST_M:.0f} m are"
+        raise StageError(f"{correction.entry}: {fault} drawn; give its places in metres of the map")
 
 
 _CHANGES = {
     "wall": changed.change_wall,
     "opening": changed.change_opening,
     "room": _change_room,
+    "furniture": _change_thing,
 }

@@ -1,12 +1,11 @@
 """Walls, faces and openings that a person says are elsewhere, of another size, or another thing."""
 
 import numpy as np
-import shapely
 
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added, named
+from scanplan.plan.corrections import added, named, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import Correction
 from scanplan.store import schemas
@@ -31,13 +30,21 @@ def change_wall(rows: PlanRows, wall: Row, correction: Correction) -> str | None
     if correction.kind:
         _make_furniture(rows, wall, correction.kind)
         return None
-    if np.isfinite(wall["arc_radius_m"]):
+    is_reshaped = correction.line_m is not None or correction.thickness_m is not None
+    if np.isfinite(wall["arc_radius_m"]) and is_reshaped:
         return "is a curved wall, which is neither moved nor made thicker; remove it, and add walls"
+    set_height(rows, wall, correction.height_m)
     if correction.line_m is not None:
         _move_wall(rows, wall, np.array(correction.line_m))
     if correction.thickness_m is not None:
         _set_thickness(rows, wall, correction.thickness_m)
     return None
+
+
+def set_height(rows: PlanRows, wall: Row, height_m: float | None) -> None:
+    """Let a wall end so high above the floor; where that is not said, it stays as it is."""
+    if height_m is not None:
+        wall["top_m"] = rows.floor_z_m + height_m
 
 
 def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str | None:
@@ -46,7 +53,7 @@ def change_opening(rows: PlanRows, opening: Row, correction: Correction) -> str 
     Returns
     -------
     str or None
-        What is wrong of its line.
+        What is wrong of its line, or of its leaf.
     """
     line_m = None if correction.line_m is None else np.array(correction.line_m)
     if correction.width_m is not None:
@@ -120,10 +127,9 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
 def _make_furniture(rows: PlanRows, wall: Row, kind: str) -> None:
     half_m = max(added.half_m_of(wall), _FRONT_M / 2)
     ground = overlays.buffer_shapes(floorplan.draw_axis(wall), half_m, cap_style="flat")
-    number = rows.next_number("furniture")
+    things.add_thing(rows, ground, kind)
     known = {name: wall[name] for name in ("z_min_m", "z_max_m", "n_points", "n_scans")}
-    shape = {"area_m2": ground.area, "geometry": shapely.to_wkb(ground)}
-    rows.furniture.append({"furniture": number, "kind": kind, "named": "", **known, **shape})
+    rows.furniture[-1] |= known
 
 
 def _move_wall(rows: PlanRows, wall: Row, line_m: FloatArray) -> None:

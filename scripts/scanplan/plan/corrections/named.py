@@ -16,14 +16,6 @@ _SLIDING_DOOR = "sliding door"
 _SWEPT = 1.5  # widths of a door: where its leaf cannot stand, nobody means it
 
 
-def find_piece(rows: PlanRows, place: shapely.Point) -> Row | None:
-    """Return the piece of furniture nearest to a place, within reach; None of none."""
-    pieces = [row for row in rows.furniture if row["kind"] == schemas.PIECE]
-    far_m = [shapely.distance(shapely.from_wkb(row["geometry"]), place) for row in pieces]
-    nearest = int(np.argmin(far_m)) if far_m else -1
-    return pieces[nearest] if far_m and far_m[nearest] <= added.REACH_M else None
-
-
 def hang_leaf(rows: PlanRows, opening: Row, correction: Correction) -> str | None:
     """Let a door slide or swing as a person says; what was seen of its leaves goes.
 

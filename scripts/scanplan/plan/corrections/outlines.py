@@ -1,5 +1,7 @@
 """Rooms that a person parts by a line, or takes for one."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -13,6 +15,7 @@ from scanplan.types import FloatArray
 
 _THICKEST_M = 1.0
 """Between rooms that are one: no more than the thickest wall that may have been drawn there."""
+_HAIR_M = 1e-6  # above rounding, and nothing on paper
 _SLACK_M = 0.01
 """By which shapes overlap that are to be joined: more than rounding, less than is drawn."""
 _LABEL_M = 0.05
@@ -21,48 +24,70 @@ _SMALLEST_M2 = 0.2
 """Of a part of a room: less is a niche, or a line drawn along a wall."""
 
 
-def split_room(rows: PlanRows, line_m: FloatArray, said: str) -> str | None:
-    """Part the room that the middle of a line (2, 2) is in; the larger part keeps its number.
+def split_room(
+    rows: PlanRows, line_m: FloatArray, said: str, others_m: Sequence[FloatArray] = ()
+) -> str | None:
+    """Part the room that most of a line (2, 2) is in; the larger part keeps its number.
 
     The line is made longer by `added.REACH_M` at both ends, as far as the room goes. It becomes a
-    passage in no wall.
+    passage in no wall. A room that goes around something is parted by two lines or more: `others_m`
+    are those that did not part one alone.
 
     Returns
     -------
     str or None
         Why it was not done.
     """
-    middle = shapely.Point(line_m.mean(axis=0))
-    room = rows.room_at(middle)
+    room = find_parted(rows, line_m)
     if room is None:
         return "lies in no room"
     outline = shapely.from_wkb(room["geometry"])
-    cut = _cut_through(outline, line_m, middle)
-    parts = overlays.enclose_areas(
-        shapely.get_parts(overlays.unite_lines([shapely.boundary(outline), cut]))
-    )
-    # what a hole of the room is, lies on neither side
-    parts = [part for part in parts if outline.covers(part.representative_point())]
-    parts.sort(key=lambda part: -part.area)
-    if len(parts) != 2 or parts[1].area < _SMALLEST_M2:
+    inside = [other for other in others_m if find_parted(rows, other) is room]
+    cuts: list[shapely.LineString] = []
+    parts: list[shapely.Polygon] = []
+    # one line makes two rooms, several may make more
+    most = 2 + len(inside)
+    # a line that passes a corner, made longer, ends in the open
+    for draw in (_cut_through, _snap_to):
+        if not 2 <= len(parts) <= most:
+            cuts = [cut for other in (line_m, *inside) for cut in draw(outline, other)]
+            parts = _join_slivers(_part(outline, cuts)) if inside else _part(outline, cuts)
+    if not 2 <= len(parts) <= most or parts[-1].area < _SMALLEST_M2:
         return "does not part the room from wall to wall"
-    number, other = room["room"], rows.next_number("room")
-    kept = parts[0]
-    rows.rooms.append(room | {"room": other, "name": ""} | _shape_columns(parts[1]))
-    room |= _shape_columns(kept)
-    for row in (room, rows.rooms[-1]):
-        row["corrected"] = said
+    number, first = room["room"], rows.next_number("room")
+    numbers = [number, *range(first, first + len(parts) - 1)]
+    for part, other in zip(parts[1:], numbers[1:], strict=True):
+        own = {"room": other, "name": "", "use": "", "corrected": said}
+        rows.rooms.append(room | own | _shape_columns(part))
+    room |= _shape_columns(parts[0]) | {"corrected": said}
+    shapes = np.array(parts, object)
     for opening in rows.openings:
         place = shapely.Point(added.ends_of(opening).mean(axis=0))
-        is_others = parts[1].distance(place) < kept.distance(place)
-        for side in ("room_a", "room_b") if is_others else ():
-            opening[side] = other if opening[side] == number else opening[side]
-    ends_m = shapely.get_coordinates(cut)[[0, -1]]
-    passage = {"opening": rows.next_number("opening"), "wall": -1, "type": "passage"}
-    passage |= {"room_a": number, "room_b": other, "thickness_m": np.nan, "corrected": said}
-    passage["width_m"] = float(np.hypot(*(ends_m[1] - ends_m[0])))
-    rows.openings.append(added.blank_row(schemas.OPENINGS) | added.end_columns(ends_m) | passage)
+        nearest = numbers[int(np.argmin(shapely.distance(shapes, place)))]
+        for side in ("room_a", "room_b"):
+            opening[side] = nearest if opening[side] == number else opening[side]
+    for cut in cuts:
+        ends_m = shapely.get_coordinates(cut)[[0, -1]]
+        far_m = shapely.distance(shapes, cut.interpolate(0.5, normalized=True))
+        sides = [numbers[row] for row in np.argsort(far_m, kind="stable")[:2].tolist()]
+        passage = {"opening": rows.next_number("opening"), "wall": -1, "type": "passage"}
+        passage |= dict(zip(("room_a", "room_b"), sorted(sides), strict=True))
+        passage |= {"thickness_m": np.nan, "corrected": said}
+        passage["width_m"] = float(np.hypot(*(ends_m[1] - ends_m[0])))
+        row = added.blank_row(schemas.OPENINGS) | added.end_columns(ends_m) | passage
+        rows.openings.append(row)
     return None
+
+
+def find_parted(rows: PlanRows, line_m: FloatArray) -> Row | None:
+    """Return the room that a line (2, 2) parts: the one that most of it is in; None of none."""
+    line = shapely.LineString(line_m)
+    inside_m = [
+        overlays.intersect_lines(line, shapely.from_wkb(room["geometry"])).length
+        for room in rows.rooms
+    ]
+    most = int(np.argmax(inside_m)) if inside_m else -1
+    return rows.rooms[most] if inside_m and inside_m[most] > 0 else None
 
 
 def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: str) -> str | None:
@@ -89,7 +114,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
         return "is parted from the other room by a wall; remove that, too"
     room |= _shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
     room |= {"closed": room["closed"] and other["closed"], "corrected": said}
-    room |= {"name": room["name"] or other["name"]}
+    room |= {said: room[said] or other[said] for said in ("name", "use")}
     room["n_scans"] = max(room["n_scans"], other["n_scans"])
     rows.rooms.remove(other)
     for opening in rows.openings:
@@ -100,15 +125,55 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
     return None
 
 
-def _cut_through(
-    outline: BaseGeometry, line_m: FloatArray, middle: shapely.Point
-) -> shapely.LineString:
-    """Return what of a line, made longer, is in a room around its middle."""
+def _part(outline: BaseGeometry, cuts: Sequence[shapely.LineString]) -> list[shapely.Polygon]:
+    """Return what lines part a room into, the largest first."""
+    parts = overlays.enclose_areas(
+        shapely.get_parts(overlays.unite_lines([shapely.boundary(outline), *cuts]))
+    )
+    # what a hole of the room is, lies on neither side
+    within = [part for part in parts if outline.covers(part.representative_point())]
+    return sorted(within, key=lambda part: -part.area)
+
+
+def _join_slivers(parts: Sequence[shapely.Polygon]) -> list[shapely.Polygon]:
+    """Return parts with what lines that cross leave between them joined to what it borders most."""
+    whole = [part for part in parts if part.area >= _SMALLEST_M2]
+    for sliver in parts[len(whole) :]:
+        edge = shapely.boundary(sliver)
+        shared_m = [overlays.intersect_lines(edge, shapely.boundary(part)).length for part in whole]
+        best = int(np.argmax(shared_m)) if whole else -1
+        joined = overlays.unite_areas([whole[best], sliver]) if whole else None
+        if isinstance(joined, shapely.Polygon):
+            whole[best] = joined
+    return sorted(whole, key=lambda part: -part.area)
+
+
+def _snap_to(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.LineString]:
+    """Return a line with each end on the outline of a room, where that is within reach of it."""
+    edge = shapely.boundary(outline)
+    ends = [shapely.Point(end) for end in line_m]
+    on_edge = [edge.interpolate(edge.project(end)) for end in ends]
+    snapped = [
+        there if there.distance(end) <= added.REACH_M else end
+        for end, there in zip(ends, on_edge, strict=True)
+    ]
+    # a hair longer, so that rounding does not leave it short
+    line = shapely.get_coordinates(shapely.LineString(snapped))
+    way_m = line[1] - line[0]
+    more_m = _HAIR_M * way_m / max(float(np.hypot(*way_m)), _HAIR_M)
+    return [shapely.LineString([line[0] - more_m, line[1] + more_m])]
+
+
+def _cut_through(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.LineString]:
+    """Return what of a line, made longer, is in a room: pieces, where something stands on it."""
     along = np.diff(line_m, axis=0)[0]
     more_m = added.REACH_M * along / np.hypot(*along)
     longer = shapely.LineString([line_m[0] - more_m, line_m[1] + more_m])
     inside = shapely.get_parts(overlays.intersect_lines(longer, outline))
-    return min(inside, key=lambda part: part.distance(middle))
+    # a hair inside its ends, as what begins there is of what the line was made longer by
+    hair_m = _SLACK_M * along / np.hypot(*along)
+    drawn = shapely.LineString([line_m[0] + hair_m, line_m[1] - hair_m])
+    return [part for part in inside if part.intersects(drawn)]
 
 
 def _fill_between(one: BaseGeometry, two: BaseGeometry, apart_m: float) -> BaseGeometry:

@@ -24,7 +24,7 @@ _SCHEMAS = {
 
 @dataclass
 class PlanRows:
-    """Rows of the tables of a plan."""
+    """Rows of the tables of a plan, and how high its floor is in the map frame, metres."""
 
     faces: list[Row]
     walls: list[Row]
@@ -32,10 +32,11 @@ class PlanRows:
     rooms: list[Row]
     evidence: list[Row]
     furniture: list[Row]
+    floor_z_m: float = 0.0
 
     def of(self, element: str) -> list[Row]:
-        """Return the rows of walls, faces, openings or rooms by the singular; of furniture."""
-        return self.furniture if element == "furniture" else getattr(self, f"{element}s")
+        """Return the rows of walls, faces, openings, rooms or furniture by the singular."""
+        return getattr(self, _table_of(element))
 
     def wall_of(self, row: Row) -> Row | None:
         """Return the wall that a face or an opening is of; None of none."""
@@ -52,7 +53,7 @@ class PlanRows:
         Likewise a face.
         """
         kept = [row for row in self.of(element) if row[element] != number]
-        setattr(self, f"{element}s", kept)
+        setattr(self, _table_of(element), kept)
         if element == "wall":
             self.faces = [row for row in self.faces if row["wall"] != number]
             self.evidence = [row for row in self.evidence if row["wall"] != number]
@@ -60,18 +61,22 @@ class PlanRows:
             row |= {side: -1 for side in ("room_a", "room_b") if row[side] == number}
 
     def next_number(self, element: str) -> int:
-        """Return the first free number after those of faces, walls or openings."""
+        """Return the first free number after those of faces, walls, openings and so on."""
         return max((row[element] for row in self.of(element)), default=-1) + 1
 
 
-def rows_of_plan(tables: Mapping[str, Columns]) -> PlanRows:
+def _table_of(element: str) -> str:
+    return element if element == "furniture" else f"{element}s"
+
+
+def rows_of_plan(tables: Mapping[str, Columns], floor_z_m: float = 0.0) -> PlanRows:
     """Return the tables of a plan, by the names of planning's, as rows."""
     rows = {}
     for name in _SCHEMAS:
         columns = tables[name]
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rows[name] = [dict(zip(columns, row, strict=True)) for row in values]
-    return PlanRows(**rows)
+    return PlanRows(**rows, floor_z_m=floor_z_m)
 
 
 def columns_of_plan(rows: PlanRows) -> dict[str, dict[str, Array]]:

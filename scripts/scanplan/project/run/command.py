@@ -23,6 +23,7 @@ SNAKEFILE = Path(__file__).absolute().parents[4] / "workflow/Snakefile"
 """The workflow that lies beside this package, in a checkout and in a wheel alike."""
 DEMO = "demo"
 DIFF = "diff"
+TAKE = "take"
 OPEN = "open"
 
 _SNAKEMAKE = (sys.executable, "-P", "-m", "snakemake")
@@ -45,6 +46,8 @@ def main(words: Sequence[str] | None = None) -> int:
         if given[:1] == [OPEN]:
             asked = _read_open(given[1:])
             return serve_results(Path(asked.results), asked)
+        if given[:1] == [TAKE]:
+            return take_edits(given[1:])
         arguments = form_arguments(given)
         asked, _ = _make_parser().parse_known_args(given)
         if asked.open:
@@ -156,6 +159,23 @@ def serve_results(
     return 0
 
 
+def take_edits(words: Sequence[str]) -> int:
+    """Take what was changed of a plan elsewhere as corrections, in a process of its own.
+
+    Its libraries are none that a run begins with.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The edited file and options, as `scanplan take --help` lists them.
+    """
+    scripts = SNAKEFILE.parents[1] / "scripts"
+    folders = [str(scripts), os.environ.get("PYTHONPATH", "")]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, folders))}
+    command = [sys.executable, "-P", "-m", "scanplan.edited.take", *words]
+    return subprocess.run(command, check=False, env=environment).returncode
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser that tells faults in one line."""
 
@@ -168,7 +188,8 @@ def _make_parser() -> _Parser:
         prog="scanplan",
         description="Makes floor plans of LiDAR recordings, in results/ of the folder it runs in.",
         epilog="`scanplan diff BEFORE AFTER` tells what changed between two surveys of a floor;"
-        " `scanplan open results/NAME` shows a report and takes corrections. A run says which"
+        " `scanplan open results/NAME` shows a report and takes corrections; `scanplan take FILE`"
+        " those of a plan that was edited elsewhere. A run says which"
         " command of Snakemake it is; whatever else Snakemake can do is added to that one.",
         allow_abbrev=False,
     )

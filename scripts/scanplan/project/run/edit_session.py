@@ -145,6 +145,22 @@ class EditSession:
             self._begin()
         return {"revision": self._read()[1]}
 
+    def take(self, entries: Sequence[Any]) -> None:
+        """Save corrections that follow those that `state` tells, without a run.
+
+        Raises
+        ------
+        StageError
+            If an entry is wrong, or a run is at work here.
+        """
+        with self._guard:
+            if self.run.is_running:
+                raise StageError("a run is at work; take them once it has ended")
+            before, _ = self._read()
+            place = self.find_place()
+            _write(place, entries, self._read_page().get("survey", ""))
+            _note(place, before, entries)
+
     def tell_run(self) -> dict[str, Any]:
         """Return how far the run is, as `ServedRun.tell` says, and what is `drawn` of the plan.
 
