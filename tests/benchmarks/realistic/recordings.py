@@ -23,7 +23,6 @@ from realistic.floors import Floor
 from scanplan.errors import StageError
 from scanplan.project import code_files, stage_settings
 from scanplan.project.settings import merge_settings
-from scanplan.types import FilePath
 
 _SCRIPT = simulate_survey.__file__
 _N_PROCESSES = 2  # of the machine that the bench is timed for
@@ -134,16 +133,16 @@ def _run_simulation(survey: Path, dataset: Path, truth: Path) -> None:
     """Simulate a survey's file into the folders of its recording and its truth."""
     own = yaml.safe_load(survey.read_text())
     settings = merge_settings(SETTINGS, own)
-    files: dict[str, FilePath] = {
-        "building": settings["simulate"]["building"],
-        "recording": dataset / "survey.bag",
-        "truth": truth / "truth.geojson",
-        "true_poses": truth / "truth_poses.tum",
-        "true_trajectory": truth / "truth_trajectory.tum",
-    }
     # its progress would mix with that of the other process
     with contextlib.redirect_stdout(io.StringIO()):
-        simulate_survey.simulate_survey(**files, **stage_settings.select_simulation(settings))
+        simulate_survey.simulate_survey(
+            settings["simulate"]["building"],
+            dataset / "survey.bag",
+            truth / "truth.geojson",
+            truth / "truth_poses.tum",
+            truth / "truth_trajectory.tum",
+            **stage_settings.select_simulation(settings),
+        )
     (dataset / "dataset.yaml").write_text(
         yaml.safe_dump({key: value for key, value in own.items() if key != "simulate"})
     )
