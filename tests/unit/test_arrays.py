@@ -73,6 +73,9 @@ def test_a_plan_of_arrays_is_that_of_the_workflow(made, tmp_path):
             if values.dtype.kind == "f":
                 # the trajectory's file rounds poses
                 assert found == pytest.approx(values, abs=2e-3, nan_ok=True), name
+            elif name in ("n_points", "n_rays"):
+                # which moves one over the edge of a band
+                assert found == pytest.approx(values, abs=2), name
             elif name != "geometry":
                 assert found.tolist() == values.tolist(), name
     order = tables.read_table(tmp_path / "order.parquet", schemas.SELECTION)["scan_id"]

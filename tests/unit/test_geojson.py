@@ -89,6 +89,6 @@ def test_furniture_is_a_polygon_with_its_evidence():
     assert piece["id"] == "furniture-0"
     assert piece["properties"] == {
         "kind": "furniture", "furniture": 0, "area_m2": 0.5, "z_min_m": 0.3, "z_max_m": 0.9,
-        "n_points": 60, "n_scans": 2,
+        "n_points": 60, "n_scans": 2, "named": "",
     }  # fmt: skip
     assert shapely.from_geojson(json.dumps(piece["geometry"])).area == pytest.approx(0.5)

@@ -142,6 +142,6 @@ def test_an_opening_that_is_added_may_swing(tmp_path):
 
 
 def test_names_of_fittings_are_the_same_everywhere():
-    assert corrections_file._KINDS["furniture"] == schemas.FIXTURES
+    assert corrections_file._KINDS["furniture"] == ("furniture", "column", *schemas.FIXTURES)
     assert {*fixtures._SYMBOLS, fixtures.STAIRS} == set(schemas.FIXTURES)
     assert set(ifc_furniture._CLASSES) == set(schemas.FIXTURES)

@@ -214,7 +214,7 @@ class TestRecordings:
         """Record floors of which some fail, by name to their fault; return all and the names."""
         chosen = floors.choose_floors(folder / "none", ["dwelling_101_laser270", "attic"])[:2]
 
-        def simulate(*, recording, **_):
+        def simulate(building, recording, *_, **__):
             name = recording.parent.name
             if name in faults:
                 raise faults[name]

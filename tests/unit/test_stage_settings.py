@@ -128,13 +128,19 @@ def keywords(stage):
     [
         (measure_crispness, stage_settings.select_crispness(SETTINGS), set()),
         (build_hulls, stage_settings.select_hulls(SETTINGS), {"threads", "chunk"}),
-        (simulate_survey, stage_settings.select_simulation(SETTINGS), {"threads", "start_ns"}),
         (interpolate_poses, stage_settings.select_section(SETTINGS, "poses"), {"moved", "made_of"}),
     ],
 )
 def test_the_stages_take_what_is_selected(stage, selected, others):
     assert set(selected) <= keywords(stage)
     assert keywords(stage) - set(selected) <= others
+
+
+def test_the_simulation_takes_what_is_selected():
+    selected = set(stage_settings.select_simulation(SETTINGS))
+    scene = {"site", "mount", "sensor", "errors", "drive", "people"}
+    assert selected - scene == keywords(simulate_survey) - {"threads", "start_ns"}
+    assert scene <= selected
 
 
 @pytest.mark.parametrize("method", methods.METHODS)
