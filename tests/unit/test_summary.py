@@ -1,5 +1,7 @@
 """A plan in lines that a surveyor reads."""
 
+import dataclasses
+import math
 import re
 
 import numpy as np
@@ -7,6 +9,7 @@ import numpy as np
 from helpers import floorplan_making, report_making
 from scanplan.plan import floorplan
 from scanplan.project.texts import CONSOLE_WIDTH
+from scanplan.report import wording
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.report.summary import summarise_survey
 from scanplan.store import doubts
@@ -105,3 +108,10 @@ def test_how_far_each_control_and_check_point_is_off_is_told():
     placed = told_of(plan(georeference=reference))["placed"]
     assert "2 control points, off by 0.100, 0.300 m" in placed and "EPSG:25832" in placed
     assert placed.endswith("1 check point, off by 0.250 m")
+
+
+def test_a_share_that_is_not_known_is_not_stated():
+    known = report_making.PREDICTION
+    unknown = dataclasses.replace(known, length_share=math.nan)
+    assert "nan" not in wording.prediction_sentence(unknown)
+    assert wording.prediction_sentence(known).startswith(wording.prediction_sentence(unknown))

@@ -58,7 +58,7 @@ def save_on_the_page(project, entry):
     )
     survey = session._read_page()["survey"]
     session.save({"survey": survey, "revision": "", "entries": [entry]})
-    session._listener.join()
+    session.run.wait()
     assert "error" not in session.tell_run(), session.tell_run()
 
 

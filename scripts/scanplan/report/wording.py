@@ -1,5 +1,6 @@
 """The report's sentences and head figures."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -37,12 +38,16 @@ def prediction_sentence(prediction: PredictionFacts) -> str:
     counts = (prediction.n_stopped, prediction.n_passed, prediction.n_beyond)
     stopped, passed, beyond = (n / prediction.n_rays for n in counts)
     n = prediction.n_scans
+    share = prediction.length_share
+    # of no element enough rays were asked
+    agree = ""
+    if math.isfinite(share):
+        agree = f" Rays agree with {share:.1%} of the length of faces, openings and outlines."
     return (
         f"Check against {floorplan.say_count(n, 'unused scan')}: of {prediction.n_rays:,} rays"
         f" {prediction.share:.1%} ({low:.1%} to {high:.1%}) end where the plan says, {stopped:.1%}"
         f" before it (furniture, people, or something not drawn), {passed:.1%} pass through drawn"
-        f" surfaces, {beyond:.1%} end where nothing is drawn. Rays agree with"
-        f" {prediction.length_share:.1%} of the length of faces, openings and outlines."
+        f" surfaces, {beyond:.1%} end where nothing is drawn.{agree}"
     )
 
 
