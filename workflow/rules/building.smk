@@ -30,7 +30,9 @@ rule assemble_building:
             for storey in BUILDING.storeys
         ],
         receivers=[
-            words_file.read_receiver(DATASETS[storey.dataset].settings["plan"]["export"])
+            words_file.read_receiver(
+                DATASETS[storey.dataset].settings["plan"]["export"]
+            )
             for storey in BUILDING.storeys
         ],
     script:

@@ -476,7 +476,9 @@ def limits_of_design(wildcards):
 
 def words_of_receiver(wildcards):
     """The words and names of layers of the job's dataset, likewise."""
-    return words_file.read_receiver(DATASETS[wildcards.dataset].settings["plan"]["export"])
+    return words_file.read_receiver(
+        DATASETS[wildcards.dataset].settings["plan"]["export"]
+    )
 
 
 def source_of_results(wildcards):
