@@ -208,10 +208,23 @@ def test_laser_scan_without_limit_or_beams():
     assert messages.read_laser_scan(bag_making.laser_scan([]))[0].shape == (0, 3)
 
 
-@pytest.mark.parametrize("increment", [0.0, np.nan])
-def test_laser_scan_without_directions(increment):
+@pytest.mark.parametrize(
+    "ranges, fields",
+    [
+        ([1, 1], {"angle_increment": 0.0}),
+        ([1, 1], {"angle_increment": np.nan}),
+        ([1], {"angle_min": np.inf}),
+    ],
+)
+def test_laser_scan_without_directions(ranges, fields):
     with pytest.raises(StageError, match="angle_increment"):
-        messages.read_laser_scan(bag_making.laser_scan([1, 1], angle_increment=increment))
+        messages.read_laser_scan(bag_making.laser_scan(ranges, **fields))
+
+
+@pytest.mark.parametrize("step_s", [0.0, -1.0, np.nan, np.inf])
+def test_laser_scan_without_times(step_s):
+    scan = bag_making.laser_scan([1, 1], time_increment=step_s)
+    assert messages.read_laser_scan(scan)[1] is None
 
 
 @pytest.mark.parametrize("kind", ["ros1", "sqlite3"])

@@ -112,7 +112,7 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
     xyz_m : (n, 3) float32
         One point a beam; NaN where the beam came back from outside [range_min, range_max).
     time_raw : (n,) float64 or None
-        Seconds since the first beam; None if `time_increment` is not positive.
+        Seconds since the first beam; None if `time_increment` is not positive, or infinite.
 
     Raises
     ------
@@ -126,8 +126,10 @@ def read_laser_scan(message: Any) -> tuple[FloatArray, FloatArray | None]:
 def read_ranges(message: Any, range_m: FloatArray) -> tuple[FloatArray, FloatArray | None]:
     """Turn ranges (n,) of a message with angles as a LaserScan's into points: see there."""
     beam = np.arange(len(range_m))
-    angle_rad = message.angle_min + beam * message.angle_increment
-    if len(range_m) > 1 and (message.angle_increment == 0 or not np.isfinite(angle_rad).all()):
+    with np.errstate(over="ignore", invalid="ignore"):
+        angle_rad = message.angle_min + beam * message.angle_increment
+    is_one_way = len(range_m) > 1 and message.angle_increment == 0
+    if is_one_way or not np.isfinite(angle_rad).all():
         raise StageError(
             f"angle_min {message.angle_min}, angle_increment {message.angle_increment}"
             " give no directions"
@@ -144,7 +146,7 @@ def read_ranges(message: Any, range_m: FloatArray) -> tuple[FloatArray, FloatArr
     range_m = np.where((range_m >= message.range_min) & (range_m < limit_m), range_m, np.nan)
     xyz_m = np.column_stack([range_m * np.cos(angle_rad), range_m * np.sin(angle_rad), range_m * 0])
     step_s = float(message.time_increment)
-    return xyz_m.astype(np.float32), beam * step_s if step_s > 0 else None
+    return xyz_m.astype(np.float32), beam * step_s if 0 < step_s < np.inf else None
 
 
 def _find_limit_m(range_m: FloatArray, most_m: float) -> float:
