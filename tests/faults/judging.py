@@ -83,6 +83,8 @@ def judge(case: Case, tally: Tally) -> None:
     signal.alarm(2 * _LONGEST_S)
     # Linux forgets the largest size that the process has had
     Path("/proc/self/clear_refs").write_text("5")
+    # a process that ran other tests before is large already
+    before_mb = _own_peak_mb()
     try:
         with redirect_stderr(io.StringIO()):
             result = case.run()
@@ -99,7 +101,7 @@ def judge(case: Case, tally: Tally) -> None:
         signal.signal(signal.SIGALRM, before)
     if time.monotonic() - begin_s > _LONGEST_S:
         outcome = HANG
-    tally.add(case.group, case.name, outcome, said, peak_mb=_own_peak_mb())
+    tally.add(case.group, case.name, outcome, said, peak_mb=_own_peak_mb() - before_mb)
 
 
 def _end_of_time(*_: object) -> None:
