@@ -1,6 +1,6 @@
 """What verdicts advise, carried out: of the drives that raised them nothing is left to tell.
 
-`make faults` tries all of them, in space too.
+One of each kind of setting; `make faults` tries all of them, in space too.
 """
 
 from dataclasses import replace
@@ -13,11 +13,8 @@ from scanplan.stage.witness_table import PLAN, SKETCH
 
 FEW = (
     "two storeys on one another",
-    "quaternion w first",
     "sensor turned by 90 degrees",
-    "ranges in feet",
     "all in centimetres",
-    "all in millimetres",
 )
 
 
