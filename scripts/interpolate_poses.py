@@ -2,17 +2,25 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from scanplan.project import provenance
 from scanplan.recordings import candidates, frame_edges
-from scanplan.recordings.motion import lidar_odometry, pose_kind, time_check, trajectory
+from scanplan.recordings.motion import (
+    lidar_odometry,
+    pose_delay,
+    pose_kind,
+    time_check,
+    trajectory,
+)
 from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log, witnesses
 from scanplan.store import doubts, schemas, tables
-from scanplan.types import BoolArray, FilePath, IntArray
+from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
 
 
 def interpolate_poses(
@@ -64,7 +72,11 @@ def interpolate_poses(
         if pose_kind.is_drifting(survey.pose_kind):
             edges, resets = _join_resets(edges, max_speed_m_s)
             measured.append(resets)
-        pose, gap_s, covered = frame_edges.chain_poses(edges, t_ns, **limits)
+        delay_s = _find_delay_s(survey, edges, limits, "poses")
+        side = "later" if delay_s > 0 else "earlier"
+        measured.append(witnesses.state_witness("late poses", abs(delay_s), side=side))
+        at_ns = t_ns + round(delay_s * 1e9)
+        pose, gap_s, covered = frame_edges.chain_poses(edges, at_ns, **limits)
         if survey.pose_kind == pose_kind.STATIONS:
             keep_every = 1
         keep_every = candidates.thin_less_standing(pose, covered, keep_every)
@@ -73,6 +85,7 @@ def interpolate_poses(
         is_steady = np.ones(len(t_ns), bool)
         if moved is not None:
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
+            motion = _shift_motion(survey, motion, delay_s, limits)
             motion = time_check.check_point_times(survey, motion)
             notes = {schemas.OF_POSES: json.dumps(motion.of_poses)}
             tables.write_table(
@@ -106,6 +119,29 @@ def interpolate_poses(
     _log_pose_kind(
         survey.pose_kind, is_set=reading.get("pose_kind", pose_kind.FOUND) != pose_kind.FOUND
     )
+
+
+def _find_delay_s(
+    survey: Survey, edges: Sequence[frame_edges.FrameEdge], limits: dict[str, float], what: str
+) -> float:
+    """Return how much later than the clouds recorded poses are stamped."""
+    if survey.pose_kind not in (pose_kind.LOCALISER, pose_kind.ODOMETRY):
+        return 0.0
+
+    def poses_at(at_ns: IntArray) -> FloatArray:
+        return frame_edges.chain_poses(edges, at_ns, **limits)[0]
+
+    return pose_delay.find_delay_s(survey, poses_at, what)
+
+
+def _shift_motion(
+    survey: Survey, motion: trajectory.SensorMotion, delay_s: float, limits: dict[str, float]
+) -> trajectory.SensorMotion:
+    """Return the motion by the clock of the clouds: that of the poses, or odometry of its own."""
+    if not motion.of_poses:
+        edge = frame_edges.FrameEdge("", "", motion.xyz_m, motion.quat_xyzw, motion.t_ns)
+        delay_s = _find_delay_s(survey, [edge], limits, "motion within sweeps")
+    return replace(motion, t_ns=motion.t_ns - round(delay_s * 1e9))
 
 
 def _join_resets(

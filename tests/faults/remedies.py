@@ -37,10 +37,6 @@ def put_w_last(drive, _):
     return [replace(drive, map_from_base=poses)], {}
 
 
-def set_clocks(drive, _):
-    return [replace(drive, late_s=0.0)], {}
-
-
 def state_mount(name):
     """Return a remedy that states how the sensor is turned on its mount."""
 
@@ -81,7 +77,6 @@ REMEDIES = {
     "two storeys on one another, no odometry": ask_for_parts,
     "poses inverted": invert_poses,
     "quaternion w first": put_w_last,
-    "poses 0.5 s late": set_clocks,
     **{name: state_mount(name) for name in _TURN},
     "second bag beside the first": drive_apart,
     "all in feet": set_units("ft", "cloud_unit", "pose_unit"),

@@ -84,6 +84,55 @@ def test_other_images_and_negated_ones_are_the_same_map(tmp_path):
         np.testing.assert_array_equal(one, third)
 
 
+def raw_room():
+    """The room as shares in per cent, as nav2 saves it in mode raw."""
+    of_grey = np.full(256, 255, np.uint8)
+    of_grey[[FREE, OCCUPIED]] = 0, 100
+    return of_grey[room()]
+
+
+def transparent_room():
+    """The room in shades, transparent where it is unknown."""
+    return np.dstack([np.where(room() == UNKNOWN, FREE, room()), 255 * (room() != UNKNOWN)])
+
+
+@pytest.mark.parametrize(
+    ("cells", "text", "name"),
+    [
+        # what nav2's map_saver states: 205 is less than that
+        (room(), YAML.replace("0.196", "0.25"), "room.pgm"),
+        (255 - room(), YAML.replace("0.196", "0.25").replace("negate: 0", "negate: 1"), "room.pgm"),
+        (raw_room(), YAML.replace("trinary", "raw"), "room.pgm"),
+        (
+            transparent_room().astype(np.uint8),
+            YAML.replace("trinary", "scale").replace("pgm", "png"),
+            "room.png",
+        ),
+    ],
+)
+def test_what_is_unknown_stays_so_in_every_mode(tmp_path, cells, text, name):
+    places, seen = read(write(tmp_path / "a"))
+    same_places, same = read(write(tmp_path / "b", cells, text, name))
+    np.testing.assert_array_equal(same_places, places)
+    for one, other in zip(seen, same, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_map_with_a_yaw_lies_turned_about_its_origin(tmp_path):
+    places, seen = read(write(tmp_path / "a"))
+    text = YAML.replace("2.0, 0]", f"2.0, {np.pi / 2}]")
+    turned_places, turned = read(write(tmp_path / "b", text=text))
+
+    def turn(xy_m):
+        x_m, y_m = (xy_m - [-1.0, 2.0]).T
+        return np.column_stack([-y_m - 1.0, x_m + 2.0])
+
+    np.testing.assert_allclose(turned_places, turn(places), atol=1e-9)
+    # in its own frame each sees the same
+    for place, turned_place, one, other in zip(places, turned_places, seen, turned, strict=True):
+        np.testing.assert_allclose(other[:, :2] - turned_place, one[:, :2] - place, atol=1e-6)
+
+
 refusal = partial(refusals.refusal, read)
 
 
@@ -93,7 +142,8 @@ refusal = partial(refusals.refusal, read)
         ("0.05", "50", "resolution 50 m"),
         ("0.05", "fine", "resolution"),
         ("0.05", "0", "resolution 0 m"),
-        ("-1.0, 2.0, 0", "-1.0, 2.0, 0.5", "yaw 0.5"),
+        ("-1.0, 2.0, 0", "-1.0, 2.0, .inf", "a yaw"),
+        ("trinary", "colours", "trinary, scale, raw"),
         ("-1.0, 2.0, 0", "-1.0, 2.0", "map_server"),
         ("-1.0, 2.0, 0", ".nan, 2.0, 0", "origin nan"),
         ("-1.0, 2.0, 0", "-1.0, 9000, 0", "origin -1, 9000"),

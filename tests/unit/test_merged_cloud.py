@@ -274,3 +274,19 @@ def test_a_table_that_cannot_be_ends_in_a_line(tmp_path, name, old, new):
 def test_a_cloud_that_shows_no_floor_ends_in_a_line(tmp_path, xyz_m, named):
     line = refusal(write(tmp_path, xyz_m))
     assert any(part in line for part in named.split("|"))
+
+
+def test_a_ceiling_as_high_as_one_in_feet_is_told(tmp_path):
+    write(tmp_path, ROOM / 0.3048)
+    _, _, told = read(tmp_path)
+    assert len(told) == 2
+    # 8.2 feet, to a cube of 0.1
+    assert "8.2 m above" in told[1] and "advanced.input.cloud_unit: ft" in told[1]
+    places, _, told = read(tmp_path, cloud_unit="ft")
+    assert len(told) == 1 and np.ptp(places[:, 0]) < 4
+
+
+@pytest.mark.parametrize("factor", [100.0, 1000.0])
+def test_points_too_far_apart_to_be_in_metres_are_refused_with_the_key(tmp_path, factor):
+    write(tmp_path, factor * ROOM)
+    assert "advanced.input.cloud_unit" in refusal(tmp_path)

@@ -100,7 +100,7 @@ def test_places_lie_farther_apart_than_what_stands_beside_them(width, length):
     keys = np.sort(pack_cells(np.concatenate([cells, ceiling])))
     columns = storeys.find_floor(keys, unpack_keys(keys)[:, 2] * 0.1)
     assert columns.is_floor.sum() == width * length
-    places = storeys.choose_places(columns, storeys.Storey(0.0, 0.01 * width * length))
+    places = storeys.choose_places(columns, storeys.Storey(0.0, 0.01 * width * length, np.nan))
     clear_m = np.minimum(places, np.array([width, length]) * 0.1 - places).min(axis=1)
     assert (clear_m >= 0.25 - 0.05).all() and len(places) > 0
     apart_m = np.linalg.norm(places[:, None] - places[None], axis=2)

@@ -15,6 +15,7 @@ import numpy as np
 from PIL import Image
 
 from scanplan.errors import StageError
+from scanplan.geometry import se3
 from scanplan.project import yaml_file
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import point_times
@@ -35,15 +36,19 @@ _APART_NS = 3600 * 10**9  # of stamps: so long that no limit of a drive's pace i
 _LEAST_PLACES = 3
 _MOST_PLACES = 3000  # 1,700 m2 of floor; of more they are farther apart, as rays reach
 _FARTHEST_M = 8000.0  # as of other poses: single precision loses millimetres beyond
+_MODES = ("trinary", "scale", "raw")
+_UNKNOWN_GREY = 205
+"""Of trinary maps as they are saved, be it less than the `free_thresh` of 0.25 that nav2 states."""
+_MOST_RAW = 100  # per cent
 
 
 class _Grid(NamedTuple):
-    """A map's cells; row 0 is that of the least y."""
+    """A map's cells; row 0 is that of the least y in the frame of the grid."""
 
     free: BoolArray
     occupied: BoolArray
     cell_m: float
-    low_m: FloatArray
+    map_from_grid: FloatArray  # (4, 4)
 
 
 class GridMapScans(PosedScans):
@@ -77,11 +82,13 @@ class GridMapScans(PosedScans):
                 f"{path}: free floor for {len(cells)} places to look from, {_LEAST_PLACES} are"
                 " needed; check free_thresh, negate and resolution"
             )
-        xy_m = self._grid.low_m + (cells[:, ::-1] + 0.5) * self._grid.cell_m
+        xy_m = (cells[:, ::-1] + 0.5) * self._grid.cell_m
         stamps_ns = np.arange(1, len(xy_m) + 1) * _APART_NS
-        level = np.tile([0.0, 0.0, 0.0, 1.0], (len(xy_m), 1))
-        xyz_m = np.column_stack([xy_m, np.zeros(len(xy_m))])
-        track = frame_edges.FrameEdge("map", "sensor", xyz_m, level, stamps_ns)
+        poses = np.tile(np.eye(4), (len(xy_m), 1, 1))
+        poses[:, :2, 3] = xy_m
+        track = frame_edges.FrameEdge(
+            "map", "sensor", *se3.split_pose(self._grid.map_from_grid @ poses), stamps_ns
+        )
         super().__init__(str(path), track, stamps_ns, STATIONS, **reading)
         self._xy_m = xy_m
 
@@ -125,7 +132,7 @@ def _cast_beams(grid: _Grid, from_m: FloatArray, way: FloatArray) -> FloatArray:
         if len(rows) == 0:
             break
         places = from_m + way[rows, None] * part_m[:, None]
-        column, row = np.moveaxis(np.floor((places - grid.low_m) / grid.cell_m).astype(int), -1, 0)
+        column, row = np.moveaxis(np.floor(places / grid.cell_m).astype(int), -1, 0)
         is_inside = (row >= 0) & (row < grid.free.shape[0])
         is_inside &= (column >= 0) & (column < grid.free.shape[1])
         row, column = np.where(is_inside, row, 0), np.where(is_inside, column, 0)
@@ -136,7 +143,7 @@ def _cast_beams(grid: _Grid, from_m: FloatArray, way: FloatArray) -> FloatArray:
         hits = ends & is_inside[beams, first]
         hits &= grid.occupied[row[beams, first], column[beams, first]]
         cell = np.column_stack([column[beams, first], row[beams, first]])
-        middle_m = grid.low_m + (cell + 0.5) * grid.cell_m
+        middle_m = (cell + 0.5) * grid.cell_m
         ends_m[rows[hits]] = (middle_m - from_m)[hits]
         is_going[rows[ends]] = False
     return ends_m
@@ -197,28 +204,40 @@ def _read_grid(path: Path) -> _Grid:
         free_below = float(values.get("free_thresh", 0.25))
         occupied_above = float(values.get("occupied_thresh", 0.65))
         is_negated = bool(int(values.get("negate", 0)))
+        mode = _MODES.index(values.get("mode", _MODES[0]))
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise StageError(
             f"{path}: is no map of map_server ({error}): it has image, resolution, origin (x, y,"
-            " yaw), negate, occupied_thresh and free_thresh; mend it"
+            f" yaw), negate, occupied_thresh, free_thresh and mode ({', '.join(_MODES)}); mend it"
         ) from None
-    if not _FINEST_M <= cell_m <= _COARSEST_M or yaw_rad != 0:
+    if not _FINEST_M <= cell_m <= _COARSEST_M:
         raise StageError(
-            f"{path}: resolution {cell_m:g} m, yaw {yaw_rad:g}: cells of {_FINEST_M} to"
-            f" {_COARSEST_M} m and a yaw of 0 are read; save the map so"
+            f"{path}: resolution {cell_m:g} m: cells of {_FINEST_M} to {_COARSEST_M} m are read;"
+            " save the map so"
         )
-    if not max(abs(x_m), abs(y_m)) < _FARTHEST_M:
+    if not (max(abs(x_m), abs(y_m)) < _FARTHEST_M and math.isfinite(yaw_rad)):
         raise StageError(
-            f"{path}: origin {x_m:g}, {y_m:g}: is to lie within {_FARTHEST_M:g} m; save the map so"
+            f"{path}: origin {x_m:g}, {y_m:g}, {yaw_rad:g}: is to lie within {_FARTHEST_M:g} m and"
+            " have a yaw; save the map so"
         )
-    share = _read_image(image_path)
-    occupied = share if is_negated else 1.0 - share
-    free = occupied < free_below
-    return _Grid(free[::-1], (occupied > occupied_above)[::-1], cell_m, np.array([x_m, y_m]))
+    map_from_grid = se3.pose_matrix(
+        [x_m, y_m, 0.0], [0.0, 0.0, math.sin(yaw_rad / 2), math.cos(yaw_rad / 2)]
+    )
+    grey, is_opaque = _read_image(image_path)
+    if _MODES[mode] == "raw":
+        occupied = grey / np.float32(_MOST_RAW)
+        is_known = grey <= _MOST_RAW
+    else:
+        grey = grey if not is_negated else 255 - grey
+        occupied = 1.0 - grey / np.float32(255)
+        is_known = is_opaque & ((grey != _UNKNOWN_GREY) | (_MODES[mode] != "trinary"))
+    free = is_known & (occupied < free_below)
+    occupied = is_known & (occupied > occupied_above)
+    return _Grid(free[::-1], occupied[::-1], cell_m, map_from_grid)
 
 
-def _read_image(path: Path) -> FloatArray:
-    """Return the grey values (rows, columns) of an image, 0 to 1."""
+def _read_image(path: Path) -> tuple[Array, BoolArray | np.bool]:
+    """Return the grey values (rows, columns) of an image, 0 to 255, and where it is opaque."""
     try:
         with Image.open(path) as image:
             if image.width * image.height > _MOST_CELLS:
@@ -226,7 +245,10 @@ def _read_image(path: Path) -> FloatArray:
                     f"{path}: {image.width} x {image.height} cells, more than {_MOST_CELLS}; cut"
                     " the map"
                 )
-            return np.asarray(image.convert("L"), np.float32) / 255
+            is_opaque = np.True_
+            if image.has_transparency_data:
+                is_opaque = np.asarray(image.convert("LA").getchannel("A")) == 255
+            return np.asarray(image.convert("L")), is_opaque
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         reason = " ".join(str(error).split())[:100]
         raise StageError(f"{path}: damaged ({reason}); save the map again") from error

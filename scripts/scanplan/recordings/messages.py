@@ -13,7 +13,7 @@ from scanplan.errors import StageError
 from scanplan.types import Array, FloatArray
 
 _POINT_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-TIME_FIELDS = ("time", "t", "timestamp")
+TIME_FIELDS = ("time", "t", "timestamp", "offset_time", "time_stamp")
 """Names that drivers give to the time of a point."""
 _A_LITTLE_M = 0.002  # what drivers take off range_max that it may not be taken for a return
 _NOISE_M = 0.05  # of simulated ranges, which are clipped at range_max or go beyond
@@ -84,7 +84,7 @@ def read_point_cloud(message: Any) -> tuple[FloatArray, Array | None]:
     -------
     xyz_m : (n, 3) float32
     time_raw : (n,) or None
-        The field `time`, `t` or `timestamp` as recorded.
+        The first of `TIME_FIELDS` that there is, as recorded.
 
     Raises
     ------

@@ -11,7 +11,7 @@ LEAST_PAIRS = 3
 """Of fewer a jump of the map between two scans is most."""
 _POINTS = 600  # of a scan: shares of fewer scatter
 _NEAR_M = 0.1  # of another point, by ranges and by how far apart points are
-_ARM_M = 3.0  # what a turn moves a wall by: walls of rooms are so far away
+ARM_M = 3.0  # what a turn moves a wall by: walls of rooms are so far away
 _MOTION_M = (0.4, 4.0)  # of a pair: less tells readings not apart, beyond it scans share little
 LEAST_MET = 0.5
 """The right reading has 0.6 to 0.95, others 0.25 at most."""
@@ -23,7 +23,7 @@ def choose_pairs(world_from_sensor: FloatArray) -> IntArray:
     """Return rows of poses (n, 4, 4) that the sensor moved and turned after, up to the next one."""
     moved = se3.invert_pose(world_from_sensor[:-1]) @ world_from_sensor[1:]
     turn_rad = np.array([se3.turn_between_rad(np.eye(4), each) for each in moved])
-    motion_m = np.linalg.norm(moved[:, :3, 3], axis=1) + _ARM_M * turn_rad
+    motion_m = np.linalg.norm(moved[:, :3, 3], axis=1) + ARM_M * turn_rad
     rows = np.flatnonzero((motion_m > _MOTION_M[0]) & (motion_m < _MOTION_M[1]))
     # by turns most readings differ: half of the pairs have them
     by_turn = rows[np.argsort(-turn_rad[rows], kind="stable")][: _PAIRS // 2]

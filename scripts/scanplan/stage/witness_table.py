@@ -94,6 +94,17 @@ WITNESSES = {
         " poses (input.pose_topic) are wrong",
         "move the sensor through all rooms, and record its poses",
     ),
+    # nearer is not looked for: see pose_delay.LEAST_S
+    "late poses": Witness(
+        0.1,
+        "{:.2f} s",
+        CAUSE,
+        PLAN,
+        "poses and clouds are stamped by different clocks",
+        "the stamps of poses are {value} {side} than those of the clouds, and were read so",
+        "the clocks of their computers differ, or what makes poses takes so long",
+        "set both clocks, and stamp poses by the scans that they are made of",
+    ),
     # parts of a bag that was split follow one another within a day
     "days apart": Witness(
         0,

@@ -35,6 +35,11 @@ _EYE_M = 1.4  # over the floor, as tripods stand: above tables, below door heads
 _BELOW_M = 0.5  # of the floor: steps, and what leans
 _APART_NS = 3600 * 10**9  # of stamps: so long that no limit of a drive's pace is met
 _LEAST_PLACES = 3  # what one place sees is a scan, and no survey
+_HIGH_M = 6.5  # storeys of 2.1 to 4 m have 7 to 13 feet; halls are so high in metres, too
+_EXPORT = (
+    "z is to be up, in metres (else set advanced.input.cloud_unit), and floors are to be in the"
+    " cloud; export it so"
+)
 
 
 class MergedCloud(UntimedScans):
@@ -82,7 +87,7 @@ class MergedCloud(UntimedScans):
         if len(xy_m) < _LEAST_PLACES:
             raise StageError(
                 f"{where}: clear floor for {len(xy_m)} places to look from, {_LEAST_PLACES} are"
-                " needed: z is to be up, in metres, and floors are to be in the cloud; export it so"
+                f" needed: {_EXPORT}"
             )
         eye_m = self._storeys[self._number].floor_z_m + _EYE_M
         self._places_m = np.column_stack([xy_m, np.full(len(xy_m), eye_m)])
@@ -99,8 +104,15 @@ class MergedCloud(UntimedScans):
             f"a merged cloud alone, no rays: the plan is what {len(self._places_m)} places on its"
             " floor would see of it; what nobody scanned looks open, and no ray tells whether it is"
         )
+        told = [said]
+        clear_m = self._storeys[self._number].clear_m
+        if clear_m > _HIGH_M:
+            told.append(
+                f"the ceiling is {clear_m:.1f} m above the floor: a hall, or the file is in feet;"
+                " if so set advanced.input.cloud_unit: ft"
+            )
         if len(self._storeys) == 1:
-            return [said]
+            return told
         origin_z_m = self._outline.lattice.origin_m[2]
         listed = [
             f"{number} with its floor at z {floor.floor_z_m + origin_z_m:.1f} m"
@@ -108,7 +120,7 @@ class MergedCloud(UntimedScans):
             for number, floor in enumerate(self._storeys[:MOST_NAMED])
         ]
         return [
-            said,
+            *told,
             f"{len(self._storeys)} storeys by height: {', '.join(listed)}; this is storey"
             f" {self._number}, advanced.input.storey gives the number of another",
         ]
@@ -168,7 +180,8 @@ def _thin(where: str, sources: Sequence[Blocks], edge_m: float) -> ThinnedCloud:
         raise StageError(f"{where}: none of its {n_points:,} points is a place; export it again")
     if len(cloud.keys) and cloud.lattice.edge_m > edge_m:
         raise StageError(
-            f"{where}: goes through more than {_MOST_CUBES:,} cubes of {edge_m} m; cut the cloud"
+            f"{where}: goes through more than {_MOST_CUBES:,} cubes of {edge_m} m; cut the cloud, or"
+            " set advanced.input.cloud_unit if it is not in metres"
         )
     log.log_line(
         f"{where}: a merged cloud of {n_points:,} points, {n_left:,} of which are not finite or lie"
@@ -182,7 +195,7 @@ def _choose_storey(where: str, found: Sequence[storeys.Storey], asked: int | Non
     if not found:
         raise StageError(
             f"{where}: shows no floor of 4 m2 with walls over it and a person's height of nothing:"
-            " z is to be up, in metres, and floors are to be in the cloud; export it so"
+            f" {_EXPORT}"
         )
     if asked is None:
         return max(range(len(found)), key=lambda number: found[number].area_m2)

@@ -24,18 +24,26 @@ _MOST_OPEN = 3  # of eight neighbours: a cell without points among more floor th
 
 
 class Storey(NamedTuple):
-    """A floor: its height over the cloud's origin, and how much of it is clear."""
+    """A floor: its height over the cloud's origin, how much of it is clear, and how high that is.
+
+    `clear_m` is the median height of what is over it, NaN where nothing is.
+    """
 
     floor_z_m: float
     area_m2: float
+    clear_m: float
 
 
 class Columns(NamedTuple):
-    """Cubes of a cloud, from below in each column, the height in each, and which are floor."""
+    """Cubes of a cloud, from below in each column, the height in each, and which are floor.
+
+    `above` is how many cubes up the next one is, 0 where there is none.
+    """
 
     cells: IntArray
     z_m: FloatArray
     is_floor: BoolArray
+    above: IntArray
 
 
 def find_floor(keys: IntArray, z_m: FloatArray) -> Columns:
@@ -55,12 +63,12 @@ def find_floor(keys: IntArray, z_m: FloatArray) -> Columns:
     cells = unpack_keys(keys)
     is_same = np.diff(column_keys(keys)) == 0
     rise = np.diff(cells[:, 2])
-    above = np.append(np.where(is_same, rise, 0), 0)[: len(cells)]  # 0: nothing
+    above = np.append(np.where(is_same, rise, 0), 0)[: len(cells)]
     below = np.insert(np.where(is_same, rise, 0), 0, 0)[: len(cells)]
     is_roofed = above > _STAND
     if np.count_nonzero(is_roofed) * CELL_M**2 >= _LEAST_FLOOR_M2:
-        return Columns(cells, z_m, is_roofed)
-    return Columns(cells, z_m, (above == 0) & (below <= _STAND))
+        return Columns(cells, z_m, is_roofed, above)
+    return Columns(cells, z_m, (above == 0) & (below <= _STAND), above)
 
 
 def find_storeys(columns: Columns) -> list[Storey]:
@@ -82,7 +90,9 @@ def find_storeys(columns: Columns) -> list[Storey]:
             continue
         is_level = columns.is_floor & (np.abs(z - low - layer) <= _LAYERS)
         middle_m = float(np.median(columns.z_m[is_level]))
-        storeys.append(Storey(middle_m, float(n_cells * CELL_M**2)))
+        above = columns.above[is_level]
+        clear_m = float(np.median(above)) * CELL_M if above.all() else np.nan
+        storeys.append(Storey(middle_m, float(n_cells * CELL_M**2), clear_m))
         near[max(0, layer - _STAND) : layer + _STAND + 1] = 0
     return sorted(storeys)
 
