@@ -114,6 +114,26 @@ def write_bag(folder, *, behind_ns=0, make_cloud=bag_making.Maker.cloud):
     return dataset_files.find_files(folder)
 
 
+def write_late_poses(folder, late_s):
+    """Write the drive of a sensor that looks left and right, whose poses are stamped late."""
+    maker = bag_making.Maker("ros1")
+    way = way_poses()
+    entries = []
+    for tenth in range(10 * (len(way) - 1)):
+        t_s = tenth / 10
+        pose = way[int(t_s)].copy()
+        pose[:3, 3] += (t_s % 1) * (way[int(t_s) + 1] - way[int(t_s)])[:3, 3]
+        pose[:3, :3] = Rotation.from_euler("z", 1.2 * np.sin(t_s / 2)).as_matrix()
+        t_ns = bag_making.START_NS + tenth * 10**8
+        if tenth % 10 == 0:
+            entries.append(("/points", t_ns, maker.cloud(t_ns, sweep(pose, tenth // 10))))
+        (at_m,), (turn,) = se3.split_pose(pose[None])
+        stamp_ns = t_ns + round(late_s * 1e9)
+        entries.append(("/amcl_pose", stamp_ns, maker.amcl(stamp_ns, at_m, turn)))
+    maker.write(folder / "run", sorted(entries, key=lambda entry: entry[1]))
+    return dataset_files.find_files(folder)
+
+
 def write_two_drives(folder, map_from_second):
     """Write the drive there, and an hour later the way back in a map of its own (4, 4)."""
     maker = bag_making.Maker("ros1")

@@ -108,6 +108,15 @@ def test_clouds_by_the_uptime_of_their_sensor(tmp_path, bag_plan):
     small_flat.assert_same_plan(plan, bag_plan)
 
 
+def test_late_poses_of_a_sensor_that_turns(tmp_path, bag_plan):
+    """As late as the first two of its scans have none."""
+    plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_late_poses(tmp_path, 0.6))
+    small_flat.assert_same_plan(plan, bag_plan)
+    told = doubts.read_doubts(tmp_path / "plan/poses.parquet", schemas.POSES)
+    assert [found.witness for found in told.findings] == ["late poses"]
+    assert "0.6" in told.findings[0].sentence and "later" in told.findings[0].sentence
+
+
 def test_one_of_two_robots_by_its_own_namespace(tmp_path, bag_plan):
     files = small_flat.write_two_robots(tmp_path)
     with pytest.raises(StageError, match=r"/robot1/points.*/robot2/points.*input\.cloud_topic"):

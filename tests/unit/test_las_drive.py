@@ -64,7 +64,11 @@ def test_little_memory_reads_the_same_scans(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("of_points", "of_trajectory"),
-    [(0.0, 0.0), (-1e9, 0.0), (0.0, 5 * 604800.0), (5 * 604800.0 - 1e9, 0.0), (3e8, 3e8)],
+    [
+        *((0.0, 0.0), (-1e9, 0.0), (0.0, 5 * 604800.0), (5 * 604800.0 - 1e9, 0.0), (3e8, 3e8)),
+        # Unix time: 3,657 days after its begin GPS's began, and 18 leap seconds are between them
+        *((offset, 3657 * 86400.0 - 18.0) for offset in (0.0, -1e9, -5 * 604800.0)),
+    ],
 )
 def test_gps_time_of_the_week_or_less_a_milliard_is_found(tmp_path, of_points, of_trajectory):
     t_ns, _, seen = read(drive(tmp_path, time_s=TIME_S + of_points, at_s=AT_S + of_trajectory))

@@ -19,9 +19,13 @@ from scanplan.types import Array, FloatArray, IntArray
 _SLICE_S = 0.1  # a scan: a walk's 0.1 m, and one turn of most sensors
 _MOST_WAITING = 10_000_000  # points of scans that are read together: 120 MB
 _WEEK_S = 7 * 24 * 3600
-_CLOCKS = ((0.0, np.inf), (1e9, np.inf), (0.0, _WEEK_S), (1e9, _WEEK_S))
+_UNIX_S = 315_964_782.0  # of GPS's begin, less the 18 leap seconds since then, as of 2017
+_CLOCKS = (
+    *((0.0, np.inf), (1e9, np.inf), (0.0, _WEEK_S), (1e9, _WEEK_S)),
+    *((_UNIX_S, np.inf), (1e9 + _UNIX_S, np.inf), (_UNIX_S, _WEEK_S)),
+)
 """What is added to the points' times, and after how long clocks begin anew: LAS has GPS seconds
-less 1e9, or those of the week; so may trajectories."""
+less 1e9, or those of the week; so may trajectories, which may be in Unix time, too."""
 _LEAST_COVERED = 0.5  # of points by the trajectory: less is another clock, or another drive
 
 

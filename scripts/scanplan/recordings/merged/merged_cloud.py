@@ -180,8 +180,8 @@ def _thin(where: str, sources: Sequence[Blocks], edge_m: float) -> ThinnedCloud:
         raise StageError(f"{where}: none of its {n_points:,} points is a place; export it again")
     if len(cloud.keys) and cloud.lattice.edge_m > edge_m:
         raise StageError(
-            f"{where}: goes through more than {_MOST_CUBES:,} cubes of {edge_m} m; cut the cloud, or"
-            " set advanced.input.cloud_unit if it is not in metres"
+            f"{where}: goes through more than {_MOST_CUBES:,} cubes of {edge_m} m; cut the cloud,"
+            " or set advanced.input.cloud_unit if it is not in metres"
         )
     log.log_line(
         f"{where}: a merged cloud of {n_points:,} points, {n_left:,} of which are not finite or lie"

@@ -49,7 +49,6 @@ def find_delay_s(survey: Survey, poses_at: PosesAt, what: str) -> float:
 
     Parameters
     ----------
-    survey : survey_protocol.Survey
     poses_at : callable
         Returns the sensor's poses (m, 4, 4) at times (m,) of the poses' clock, NaN where not known.
     what : str
@@ -114,7 +113,7 @@ def _choose_pairs(poses_at: PosesAt, t_ns: IntArray) -> IntArray:
     moved = [_moved_between(poses_at, t_ns[apart], by_s) for by_s in (-_SHOWN_S, 0.0, _SHOWN_S)]
     if len(apart) < 2:
         return np.empty((0, 2), int)
-    shown_m = np.nanmax([_apart_m(moved[1], other) for other in (moved[0], moved[2])], axis=0)
+    shown_m = np.fmax(_apart_m(moved[1], moved[0]), _apart_m(moved[1], moved[2]))
     order = np.argsort(-shown_m, kind="stable")[:_MOST_PAIRS]
     order = np.sort(order[shown_m[order] > _SHOWN_M])
     return np.column_stack([apart[order], apart[order + 1]])
