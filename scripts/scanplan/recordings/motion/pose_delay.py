@@ -24,7 +24,7 @@ LEAST_S = 0.15
 _STEP_S = 0.1  # at 30 degrees/s a wall 3 m away moves by 16 cm, within what points are matched by
 _FINE_S = 0.02  # less moves it by 3 cm, the noise of ranges
 _SHOWN_S = 0.5  # by so much of a delay pairs are chosen that show one
-_SHOWN_M = 0.1  # that points 3 m away have to be moved by it
+_SHOWN_M = 0.1  # that its turns have to move points 3 m away by
 _APART_M = 0.5  # between the scans of a pair, which still overlap
 _APART_DEG = 20.0
 _MOST_PAIRS = 16
@@ -113,7 +113,7 @@ def _choose_pairs(poses_at: PosesAt, t_ns: IntArray) -> IntArray:
     moved = [_moved_between(poses_at, t_ns[apart], by_s) for by_s in (-_SHOWN_S, 0.0, _SHOWN_S)]
     if len(apart) < 2:
         return np.empty((0, 2), int)
-    shown_m = np.fmax(_apart_m(moved[1], moved[0]), _apart_m(moved[1], moved[2]))
+    shown_m = np.fmax(*(_turned_apart_m(moved[1], other) for other in (moved[0], moved[2])))
     order = np.argsort(-shown_m, kind="stable")[:_MOST_PAIRS]
     order = np.sort(order[shown_m[order] > _SHOWN_M])
     return np.column_stack([apart[order], apart[order + 1]])
@@ -125,11 +125,11 @@ def _moved_between(poses_at: PosesAt, t_ns: IntArray, delay_s: float) -> FloatAr
     return se3.invert_pose(poses[:-1]) @ poses[1:]
 
 
-def _apart_m(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return by how much motions (n, 4, 4) move points 3 m away differently; NaN of unknown."""
-    between = se3.invert_pose(one) @ other
-    turn_rad = np.arccos(np.clip((np.trace(between[:, :3, :3], axis1=1, axis2=2) - 1) / 2, -1, 1))
-    return np.linalg.norm(between[:, :3, 3], axis=1) + scan_pairs.ARM_M * turn_rad
+def _turned_apart_m(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return how far turns (n, 4, 4) move points 3 m away from one another; NaN of unknown."""
+    between = np.swapaxes(one[:, :3, :3], 1, 2) @ other[:, :3, :3]
+    turn_rad = np.arccos(np.clip((np.trace(between, axis1=1, axis2=2) - 1) / 2, -1, 1))
+    return scan_pairs.ARM_M * turn_rad
 
 
 def _count(scan: Scan) -> int:
