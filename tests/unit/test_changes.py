@@ -135,6 +135,24 @@ def test_a_wall_that_moved_is_told_by_how_much_and_where_to(by_m):
     assert abs(wall.shift_m) > verdicts.SIGMAS * wall.sigma_m
 
 
+@pytest.mark.parametrize("by_m", [0.3, -0.3])
+def test_a_wall_that_what_is_behind_shows_to_be_gone_is_so_whatever_that_is(by_m):
+    in_left = [place for place in SENSORS if place[0] < 4.5]
+    before = survey(doors=[])
+    after = survey([(5 + by_m, 0, 5 + by_m, 4)], [], sensors=in_left)
+    after.plan.walls["p_true"][4] = 0.8
+    found = [c for c in compare(before, after) if c.table == "wall" and c.verdict != NOT_SEEN]
+    changed = [c for c in found if c.verdict in verdicts.CHANGES and c.shape.length > 1]
+    if by_m < 0:
+        # what stands before a wall may be a cupboard
+        assert [(c.verdict, c.is_change) for c in changed] == [(MOVED, False)]
+        return
+    gone, new = changed
+    assert (gone.verdict, gone.number_a, gone.number_b, gone.is_change) == (GONE, 4, -1, True)
+    assert (new.verdict, new.number_a, new.number_b, new.is_change) == (NEW, -1, 4, False)
+    assert new.shape.centroid.x - gone.shape.centroid.x == pytest.approx(by_m, abs=0.01)
+
+
 def test_a_shift_within_its_error_is_none():
     changes = compare(survey(doors=[]), survey([(5.01, 0, 5.01, 5)], []))
     assert told(changes, "wall") == []

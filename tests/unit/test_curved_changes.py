@@ -6,49 +6,19 @@ import numpy as np
 import pytest
 import shapely
 
-from helpers import floorplan_making
-from helpers.changing_floor import survey
+from helpers.curved_floor import CENTRE_M, NUMBER, RADIUS_M, surveyed
 from scanplan.changes import face_shifts, wall_changes
-from scanplan.changes.curve_shifts import find_moved_curves, join_curves
+from scanplan.changes.curve_shifts import join_curves, measure_curves
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.verdicts import GONE, MOVED, NEW, SAME
-from scanplan.geometry.arcs import trace_arc
-from scanplan.store import schemas
 
-ENDS_M, CENTRE_M = np.array([(3.5, 4.0), (3.5, 1.0)]), np.array([5.0, 2.5])
-RADIUS_M, HALF_M = math.hypot(1.5, 1.5), 0.05
-NUMBER = 4
 CHORD = (3.5, 3.3, 3.5, 1.7)
-
-
-def sides():
-    """Short chords of the inner and the outer side of a quarter of a ring in the larger room."""
-    for away_m in (-HALF_M, HALF_M):
-        corners_m = trace_arc(ENDS_M, CENTRE_M, away_m=away_m)
-        yield from np.stack([corners_m[:-1], corners_m[1:]], axis=1)
-
-
-def surveyed(*, has_arc=True, hidden=(), by_m=(0.0, 0.0)):
-    """The floor without inner walls, with the curved one, which nothing is drawn of but itself.
-
-    `by_m` is how far that stands from where it stood.
-    """
-    arc = [tuple((line + by_m).ravel()) for line in sides()] if has_arc else []
-    found = survey([], [], hidden=[*arc, *hidden])
-    if has_arc:
-        added = floorplan_making.walls([((ENDS_M + by_m).ravel(), 2 * HALF_M, -1, -1, "observed")])
-        values = (*(CENTRE_M + by_m), RADIUS_M, 0.002)
-        added |= {name: np.array([of]) for name, of in zip(schemas.ARC, values, strict=True)}
-        added |= {"wall": np.array([NUMBER], np.int32), "p_true": np.array([0.99])}
-        walls = {name: np.append(of, added[name]) for name, of in found.plan.walls.items()}
-        object.__setattr__(found.plan, "walls", walls)
-    return found
 
 
 def compare(a, b):
     fit = fit_frame(a.faces, b.faces, PlaneMotion())
-    curves = find_moved_curves(a, b, fit)
+    curves = measure_curves(a, b, fit)
     changes = wall_changes.compare_walls(a, b, face_shifts.measure_shifts(a, b, fit))
     return join_curves(changes, curves)
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from scanplan.changes import face_shifts, frames, opening_changes, room_changes, wall_changes
-from scanplan.changes.curve_shifts import find_moved_curves, join_curves
+from scanplan.changes.curve_shifts import join_curves, measure_curves
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
@@ -80,7 +80,7 @@ def find_slack_m(tie: FrameTie) -> float:
 def compare_placed(a: Survey, b: Survey, tie: FrameTie) -> Comparison:
     """Return what became of walls, openings, rooms and columns, of surveys in one frame."""
     shifts = face_shifts.measure_shifts(a, b, tie.fit)
-    curves = find_moved_curves(a, b, tie.fit)
+    curves = measure_curves(a, b, tie.fit)
     changes = join_curves(wall_changes.compare_walls(a, b, shifts), curves)
     changes += opening_changes.compare_openings(a, b)
     changes += room_changes.compare_rooms(a, b, changes)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.frame_fit import FrameFit
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGES, MOVED, REACH_M, SIGMAS, Change
+from scanplan.changes.verdicts import CHANGES, MOVED, REACH_M, SAME, SIGMAS, Change
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.types import BoolArray, FloatArray
@@ -23,7 +23,7 @@ _LIKE_M = 0.03  # what one arc, moved, may lie off the other, beside what both e
 
 @dataclass(frozen=True, eq=False)
 class CurveShift:
-    """A curved wall that has moved.
+    """A curved wall of both surveys.
 
     Attributes
     ----------
@@ -43,6 +43,11 @@ class CurveShift:
     sigma_m: float
     axis: BaseGeometry
 
+    @property
+    def is_moved(self) -> bool:
+        """Whether it has moved by more than both err."""
+        return math.hypot(*self.moved_m.tolist()) > SIGMAS * self.sigma_m
+
 
 @dataclass(frozen=True, eq=False)
 class _Curve:
@@ -52,8 +57,8 @@ class _Curve:
     is_thick: bool
 
 
-def find_moved_curves(a: Survey, b: Survey, fit: FrameFit) -> Sequence[CurveShift]:
-    """Return the curved walls of a that stand elsewhere in b, as what arcs differ by says.
+def measure_curves(a: Survey, b: Survey, fit: FrameFit) -> Sequence[CurveShift]:
+    """Return the curved walls of a that b has, too, and by how much they stand elsewhere there.
 
     Parameters
     ----------
@@ -74,7 +79,7 @@ def find_moved_curves(a: Survey, b: Survey, fit: FrameFit) -> Sequence[CurveShif
 
 
 def join_curves(changes: Sequence[Change], curves: Sequence[CurveShift]) -> list[Change]:
-    """Return what became of walls, with each curved wall that has moved as one.
+    """Return what became of walls, with each curved wall that has moved as one, others measured.
 
     Parameters
     ----------
@@ -83,7 +88,8 @@ def join_curves(changes: Sequence[Change], curves: Sequence[CurveShift]) -> list
     """
     joined = list(changes)
     for curve in curves:
-        joined = _join_pieces(joined, curve)
+        join = _join_pieces if curve.is_moved else _measure_pieces
+        joined = join(joined, curve)
     return joined
 
 
@@ -116,6 +122,21 @@ def _join_pieces(changes: list[Change], curve: CurveShift) -> list[Change]:
     return [moved, *(change for change in changes if change not in pieces)]
 
 
+def _measure_pieces(changes: list[Change], curve: CurveShift) -> list[Change]:
+    """Return changes with what each piece of a curved wall that stands is off by, across it."""
+    measured = []
+    for change in changes:
+        is_piece = change.number_a == curve.number_a and change.verdict == SAME
+        if is_piece and math.isnan(change.shift_m):
+            normal = left_normals(shapely.get_coordinates(change.shape)[None])[0]
+            shift_m = float(curve.moved_m @ normal)
+            change = replace(
+                change, number_b=curve.number_b, shift_m=shift_m, sigma_m=curve.sigma_m
+            )
+        measured.append(change)
+    return measured
+
+
 def _list_curves(survey: Survey) -> Iterator[_Curve]:
     plan = survey.plan
     for row in np.flatnonzero(plan.wall_shapes.is_bent).tolist():
@@ -125,7 +146,7 @@ def _list_curves(survey: Survey) -> Iterator[_Curve]:
 
 
 def _measure(one: _Curve, other: _Curve, fit: FrameFit) -> CurveShift | None:
-    """Return by which shift one arc comes to lie on another, None where none does or none is told.
+    """Return by which shift one arc comes to lie on another, None where none does.
 
     What lies across of it is known along an arc alone: a shift is what makes up for that
     everywhere.
@@ -144,7 +165,7 @@ def _measure(one: _Curve, other: _Curve, fit: FrameFit) -> CurveShift | None:
     of_frame_m = float(np.median(fit.sigmas_m(at_m, normals)))
     errors_m = np.nan_to_num([one.sigma_m, other.sigma_m, of_frame_m, fit.scatter_m])
     sigma_m = float(np.sqrt(np.sum(errors_m**2)))
-    if math.hypot(*moved_m.tolist()) <= SIGMAS * sigma_m or rest_m > SIGMAS * sigma_m + _LIKE_M:
+    if rest_m > SIGMAS * sigma_m + _LIKE_M:
         return None
     return CurveShift(one.number, other.number, moved_m, sigma_m, one.axis)
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+import shapely.affinity
 
 from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.face_shifts import FaceShifts
 from scanplan.changes.ray_cells import CELL_M, Later
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -77,12 +78,15 @@ class _Shifts:
         How many show it, see `verdicts.rate_shift`.
     number : int64
         Of its wall, -1 of none.
+    is_vacated : bool
+        Whether returns of the other survey lie behind a face of it: it does not stand there.
     """
 
     shift_m: FloatArray
     sigma_m: FloatArray
     n_shown: IntArray
     number: IntArray
+    is_vacated: BoolArray
 
     @property
     def is_moved(self) -> BoolArray:
@@ -130,7 +134,7 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             # what is left beside a wall that is gone is no part of it that has moved
             is_rest = found.is_moved[cells].any() and _length_m(cells) < gone_m
             if kind == _MATCHED and not is_rest:
-                yield _judge_shift(wall, cells, found, others)
+                yield from _judge_shift(wall, cells, found, others)
             elif kind != _IN_OPENING:
                 yield _judge_rays(wall, kind, cells, compared)
 
@@ -183,6 +187,7 @@ def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
     shift_m, sigma_m = np.full((2, 2, wall.n_cells), np.nan)
     number = np.full(wall.n_cells, -1, np.int64)
     n_returns = np.zeros(wall.n_cells, np.int64)
+    is_vacated = np.zeros(wall.n_cells, bool)
     turned = np.abs(shifts.faces.normal[pairs.a] @ wall.line.normal)
     rows = np.flatnonzero((shifts.faces.wall[pairs.a] == wall.number) & (turned >= _COSINE))
     # the longest last, so that it stands where several lie over one another
@@ -197,6 +202,7 @@ def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
         shift_m[side, cells] = pairs.shift_m[row] if is_left else -pairs.shift_m[row]
         sigma_m[side, cells] = shifts.sigma_m[row]
         n_returns[cells] = int(shifts.is_confirmed[row])
+        is_vacated[cells] |= bool(shifts.is_confirmed[row]) and float(pairs.shift_m[row]) < 0
         other = shifts.others.wall[pairs.b[row]]
         number[cells] = np.where(other >= 0, other, number[cells])
     known = np.isfinite(shift_m)
@@ -209,7 +215,7 @@ def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
     # of sides that have not moved alike one may be lined, or measured wrongly
     apart = np.abs(shift_m[0] - shift_m[1]) > SIGMAS * of_mean_m + _LIKE_M
     n_shown = np.where(apart, 1, n_sides) + n_returns
-    return _Shifts(mean_m, of_mean_m, n_shown, number)
+    return _Shifts(mean_m, of_mean_m, n_shown, number, is_vacated)
 
 
 def _part(state: IntArray, is_open: BoolArray, is_moved: BoolArray) -> Iterator[tuple[int, slice]]:
@@ -245,7 +251,10 @@ def _length_m(cells: slice) -> float:
     return (cells.stop - cells.start) * CELL_M
 
 
-def _judge_shift(wall: Wall, cells: slice, found: _Shifts, others: Mapping[int, Wall]) -> Change:
+def _judge_shift(
+    wall: Wall, cells: slice, found: _Shifts, others: Mapping[int, Wall]
+) -> Iterator[Change]:
+    """Yield what became of a stretch beside which the other survey has faces."""
     known = np.flatnonzero(np.isfinite(found.shift_m[cells])) + cells.start
     shift_m, sigma_m = (
         float(np.median(values[known])) for values in (found.shift_m, found.sigma_m)
@@ -265,11 +274,20 @@ def _judge_shift(wall: Wall, cells: slice, found: _Shifts, others: Mapping[int, 
         sigma_m=sigma_m,
     )
     if abs(shift_m) <= SIGMAS * sigma_m:
-        return same
+        yield same
+        return
     x_m, y_m = (shift_m * wall.line.normal).tolist()
     doubt = "" if p >= LIKELY else "shown by one face alone"
-    p *= _rate_both(wall, others.get(other))
-    return replace(same, verdict=MOVED, p=p, moved_m=(x_m, y_m), doubt=doubt)
+    p_moved = p * _rate_both(wall, others.get(other))
+    p_gone = p * wall.p_true
+    if p_moved < LIKELY <= p_gone and found.is_vacated[known].all():
+        # whatever stands behind it now, the wall that stood here does not
+        doubt = f"moved by {abs(shift_m):.2f} m, {p_moved:.2f}"
+        yield replace(same, number_b=-1, verdict=GONE, p=p_gone, doubt=doubt)
+        there = shapely.affinity.translate(same.shape, x_m, y_m)
+        yield replace(same, number_a=-1, verdict=NEW, p=p_moved, shape=there, doubt=doubt)
+        return
+    yield replace(same, verdict=MOVED, p=p_moved, moved_m=(x_m, y_m), doubt=doubt)
 
 
 def _rate_both(wall: Wall, other: Wall | None) -> float:

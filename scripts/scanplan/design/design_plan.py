@@ -1,5 +1,7 @@
 """A drawn storey as a floor plan: the plan of a survey that saw all and errs nowhere."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -7,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.surveys import Survey
 from scanplan.design.drawn_sight import see_storey
-from scanplan.design.drawn_storey import DrawnStorey
+from scanplan.design.drawn_storey import DrawnStorey, DrawnWall
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals, line_lengths_m
 from scanplan.plan.floorplan import FloorPlan, line_shapes, make_floorplan
@@ -42,6 +44,7 @@ def make_plan(storey: DrawnStorey, name: str) -> FloorPlan:
         face_right=sides[:, 1],
         z_min_m=np.array([wall.solid.low_m for wall in storey.walls], float),
         z_max_m=np.array([wall.solid.high_m for wall in storey.walls], float),
+        **_draw_arcs(storey.walls),
         **dict.fromkeys(("rmse_m", "sigma_offset_m"), np.zeros(len(lines_m))),
     )
     areas = np.array([space.area for space in storey.spaces], object)
@@ -72,6 +75,15 @@ def make_plan(storey: DrawnStorey, name: str) -> FloorPlan:
     return make_floorplan(parts, 0.0, storey.height_m, name, furniture=furniture)
 
 
+def _draw_arcs(walls: Sequence[DrawnWall]) -> Columns:
+    known = np.full((len(walls), len(schemas.ARC)), np.nan)
+    for row, wall in enumerate(walls):
+        if wall.centre_m is not None:
+            radius_m = np.hypot(*(wall.line_m[0] - wall.centre_m))
+            known[row] = (*wall.centre_m, radius_m, 0.0)
+    return {name: known[:, i].copy() for i, name in enumerate(schemas.ARC)}
+
+
 def _draw_faces(storey: DrawnStorey) -> tuple[Columns, Array]:
     """Return faces, and which of them are on the left and on the right of each wall (n, 2)."""
     grounds = [*(w.solid.ground for w in storey.walls), *(c.solid.ground for c in storey.columns)]
@@ -82,14 +94,15 @@ def _draw_faces(storey: DrawnStorey) -> tuple[Columns, Array]:
     for row, wall in enumerate(storey.walls):
         others = overlays.unite_areas([*grounds[:row], *grounds[row + 1 :]])
         hidden = overlays.buffer_shapes(others, _SKIN_M, join_style="mitre")
-        normal = left_normals(wall.line_m[None])[0]
-        for side, sign in enumerate((1.0, -1.0)):
-            # its normal on the left, as of all faces
-            ends_m = wall.line_m[:: int(sign)] + sign * wall.thickness_m / 2 * normal
-            for part in _list_lines(overlays.subtract_lines(line_shapes(ends_m[None])[0], hidden)):
-                sides[row, side] = len(lines_m) if sides[row, side] < 0 else sides[row, side]
-                lines_m.append(_along(ends_m, part))
-                of_wall.append(row)
+        left_m, right_m = wall.sides_m
+        # its normal on the left, as of all faces
+        for side, way in enumerate((left_m, right_m[::-1])):
+            shown = overlays.subtract_lines(line_shapes(_pair(way)), hidden)
+            for ends_m, rest in zip(_pair(way), np.atleast_1d(shown), strict=True):
+                for part in _list_lines(rest):
+                    sides[row, side] = len(lines_m) if sides[row, side] < 0 else sides[row, side]
+                    lines_m.append(_along(ends_m, part))
+                    of_wall.append(row)
     lines = np.array(lines_m, float).reshape(-1, 2, 2)
     normals = left_normals(lines)
     columns = _fill(
@@ -104,6 +117,11 @@ def _draw_faces(storey: DrawnStorey) -> tuple[Columns, Array]:
         wall=np.array(of_wall, np.int32),
     )
     return columns, sides
+
+
+def _pair(way_m: FloatArray) -> FloatArray:
+    """Return the lines (n - 1, 2, 2) between places (n, 2) along a way."""
+    return np.stack([way_m[:-1], way_m[1:]], axis=1)
 
 
 def _list_lines(shape: BaseGeometry) -> list[BaseGeometry]:

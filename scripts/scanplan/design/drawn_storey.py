@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.geometry.arcs import trace_arc, turn_rad
+from scanplan.geometry.lines import left_normals
 from scanplan.types import FloatArray
 
 
@@ -27,17 +29,19 @@ class Solid:
 
 @dataclass(frozen=True, eq=False)
 class DrawnWall:
-    """A straight wall.
+    """A wall.
 
     Attributes
     ----------
     guid, name : str
         As the file states them.
     line_m : (2, 2) float64
-        Its middle, from end to end.
+        Its middle, from end to end; of a curved one the ends of that.
     thickness_m : float
     solid : Solid
         Its body, openings not cut out.
+    centre_m : (2,) float64, optional
+        Of a curved one, whose middle is the shorter arc between its ends.
     """
 
     guid: str
@@ -45,6 +49,21 @@ class DrawnWall:
     line_m: FloatArray
     thickness_m: float
     solid: Solid
+    centre_m: FloatArray | None = None
+
+    @property
+    def sides_m(self) -> tuple[FloatArray, FloatArray]:
+        """Places (n, 2) along its left side and its right side, from the first end on."""
+        half_m = self.thickness_m / 2
+        if self.centre_m is None:
+            off_m = half_m * left_normals(self.line_m[None])[0]
+            return self.line_m + off_m, self.line_m - off_m
+        inner_m, outer_m = (
+            trace_arc(self.line_m, self.centre_m, away_m=away_m) for away_m in (-half_m, half_m)
+        )
+        from_centre_m = self.line_m - self.centre_m
+        is_left = float(turn_rad(from_centre_m[1], from_centre_m[0])) > 0
+        return (inner_m, outer_m) if is_left else (outer_m, inner_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +137,7 @@ class DrawnStorey:
     walls, openings, spaces, columns
         What is compared.
     others : sequence of Solid
-        What stands there, too, and is not compared: walls with other than straight outlines.
+        What stands there, too, and is not compared: walls of other outlines.
     """
 
     name: str

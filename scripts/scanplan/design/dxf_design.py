@@ -21,6 +21,7 @@ from ezdxf.path import from_hatch, make_path
 from ezdxf.units import conversion_factor
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.design.curved_ground import CurvedGround, find_curved_ground
 from scanplan.design.drawn_storey import (
     DrawnColumn,
     DrawnOpening,
@@ -47,6 +48,7 @@ _IN_LINE_M = 0.02  # of walls on one line
 _COVERED = 0.95  # of the ground between two sides that is matter
 _SAGITTA_M = 0.005  # of chords for arcs
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
+_BESIDE_M = 0.01  # from a curved wall: what chords leave of it is no straight one
 _SKIN_M = 1e-3  # what lines that meet are drawn apart
 _DEEPEST = 32  # blocks within one another: a door in a flat in a house is three
 
@@ -98,9 +100,13 @@ def draw_storey(lines: dict[str, Array]) -> DrawnStorey:
     cells = shapely.get_parts(overlays.enclose_areas([overlays.unite_lines(lines["wall"])]))
     is_thin = np.array([_is_thin(cell) for cell in cells], bool)
     built = overlays.unite_areas(cells[is_thin], grid=_GRID_M)
-    strips = sorted(_find_strips(built), key=lambda of: of.line_m.ravel().tolist())
+    curved = find_curved_ground(built)
+    bent = overlays.buffer_shapes(overlays.unite_areas([of.ground for of in curved]), _BESIDE_M)
+    straight = overlays.subtract_areas(built, bent) if curved else built
+    strips = sorted(_find_strips(straight), key=lambda of: of.line_m.ravel().tolist())
     walls, gaps = _join(strips, built, lines)
     drawn = [_wall(number, strip) for number, strip in enumerate(walls)]
+    drawn += [_bent_wall(number, of) for number, of in enumerate(curved, len(drawn))]
     openings = [
         DrawnOpening("", f"{kind} {n}", wall, line_m, kind, *_HEIGHTS_M[kind])
         for n, (wall, (line_m, kind)) in enumerate(gaps)
@@ -112,7 +118,7 @@ def draw_storey(lines: dict[str, Array]) -> DrawnStorey:
         DrawnColumn("", f"column {n}", Solid(area, 0.0, _HEIGHT_M))
         for n, area in enumerate(_list_areas(lines["column"]))
     ]
-    # corners, and what is curved
+    # corners
     rest = overlays.subtract_areas(built, overlays.unite_areas([w.solid.ground for w in drawn]))
     others = [Solid(part, 0.0, _HEIGHT_M) for part in shapely.get_parts(rest)]
     return DrawnStorey("model space", 0.0, _HEIGHT_M, drawn, openings, spaces, columns, others)
@@ -276,3 +282,8 @@ def _wall(number: int, strip: _Strip) -> DrawnWall:
     )
     solid = Solid(ground, 0.0, _HEIGHT_M)
     return DrawnWall("", f"wall {number}", strip.line_m, strip.thickness_m, solid)
+
+
+def _bent_wall(number: int, of: CurvedGround) -> DrawnWall:
+    solid = Solid(of.ground, 0.0, _HEIGHT_M)
+    return DrawnWall("", f"wall {number}", of.ends_m, of.thickness_m, solid, of.centre_m)

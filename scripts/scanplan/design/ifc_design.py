@@ -7,6 +7,7 @@ import shapely
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.design.curved_ground import find_curved_ground
 from scanplan.design.drawn_storey import (
     DrawnColumn,
     DrawnOpening,
@@ -17,6 +18,7 @@ from scanplan.design.drawn_storey import (
 )
 from scanplan.design.ifc_file import IfcBuilding, IfcPart
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import turn_rad
 from scanplan.types import FloatArray
 
 _LEAST_HIGH_M = 0.5  # of a wall: a lower one is a plinth or a kerb
@@ -88,14 +90,18 @@ def _is_within(solid: Solid, height_m: float) -> bool:
 
 
 def _draw_wall(part: IfcPart, solid: Solid) -> DrawnWall | None:
-    """Return a wall along its own axis; None of one that is curved or has corners."""
+    """Return a wall along its own axis, or its arc; None of one that has corners."""
     line_m, thickness_m = _middle(part.along, solid.ground)
     length_m = float(np.hypot(*(line_m[1] - line_m[0])))
     if length_m <= thickness_m:
         line_m, thickness_m = _middle(np.array([-part.along[1], part.along[0]]), solid.ground)
         length_m = float(np.hypot(*(line_m[1] - line_m[0])))
     if solid.ground.area < _STRAIGHT * length_m * thickness_m:
-        return None
+        curved = find_curved_ground(solid.ground)
+        if len(curved) != 1 or curved[0].ground.area < _STRAIGHT * solid.ground.area:
+            return None
+        (of,) = curved
+        return DrawnWall(part.guid, part.name, of.ends_m, of.thickness_m, solid, of.centre_m)
     return DrawnWall(part.guid, part.name, line_m, thickness_m, solid)
 
 
@@ -113,9 +119,7 @@ def _draw_opening(
     part: IfcPart, solid: Solid, walls: list[DrawnWall], rows: Mapping[str, int]
 ) -> DrawnOpening:
     wall = walls[rows[part.host]]
-    along = (wall.line_m[1] - wall.line_m[0]) / np.hypot(*(wall.line_m[1] - wall.line_m[0]))
-    place_m = (shapely.get_coordinates(solid.ground) - wall.line_m[0]) @ along
-    line_m = wall.line_m[0] + np.array([[place_m.min()], [place_m.max()]]) * along
+    line_m = _find_jambs(wall, shapely.get_coordinates(solid.ground))
     empty = "passage" if solid.low_m < _SILL_M else "window"
     kind = part.fills or empty
     kind = "glass" if kind == "window" and solid.low_m < _GLASS_M else kind
@@ -128,6 +132,18 @@ def _draw_opening(
         max(solid.low_m, 0.0),
         solid.high_m,
     )
+
+
+def _find_jambs(wall: DrawnWall, corners_m: FloatArray) -> FloatArray:
+    """Return from where to where (2, 2) in the middle of a wall a hole reaches."""
+    if wall.centre_m is None:
+        along = (wall.line_m[1] - wall.line_m[0]) / np.hypot(*(wall.line_m[1] - wall.line_m[0]))
+        place_m = (corners_m - wall.line_m[0]) @ along
+        return wall.line_m[0] + np.array([[place_m.min()], [place_m.max()]]) * along
+    first = wall.line_m[0] - wall.centre_m
+    turned = turn_rad(corners_m - wall.centre_m, first)
+    way = complex(*first) * np.exp(1j * np.array([turned.min(), turned.max()]))
+    return wall.centre_m + np.column_stack([way.real, way.imag])
 
 
 def _draw_space(part: IfcPart, solid: Solid) -> Iterator[DrawnSpace]:
