@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 
 from scanplan.arrays import array_plan
 from scanplan.changes import growth, growth_table, survey_files
+from scanplan.changes.growth import Grown
 from scanplan.changes.joined_scans import JoinedScans
 from scanplan.exports import drawing, dxf, geojson, svg
 from scanplan.exports.changes import compared_sheet, growth_sheet
-from scanplan.exports.data import element_tables
+from scanplan.exports.data import element_ids, element_tables
+from scanplan.exports.model_origin import ModelOrigin
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import code_files
@@ -33,7 +35,8 @@ def grow_plan(
         The earliest first: `faces`, `walls`, `openings`, `rooms`, `free`, `furniture`, `evidence`
         and `confidence` of plan/, `scans` and `registration`.
     outputs : dict of str to path-like
-        `table`, `csv`, `geojson`, `svg`, `pdf`, `png`, `dxf` and `summary`, to write.
+        `table`, `csv`, `geojson`, `svg`, `pdf`, `png`, `dxf` and `summary`, to write; `ifc` where a
+        building model is wanted.
     names : sequence of str
         Of the datasets.
     settings : dict
@@ -57,7 +60,7 @@ def grow_plan(
 
     def assemble(joined: JoinedScans) -> tuple[FloorPlan, Columns]:
         made = array_plan.assemble_plan(joined, names[-1], threads)
-        return made.drawn, made.evidence
+        return array_plan.rate_plan(made, joined), made.evidence
 
     known = [
         survey_files.read_survey(files, name, **assumed_m)
@@ -80,13 +83,29 @@ def grow_plan(
         notes=growth_table.state_surveys(grown),
     )
     atomic.write_text(outputs["csv"], element_tables.format_columns(columns))
-    atomic.write_text(outputs["geojson"], geojson.format_geojson(grown.plan, grown.evidence))
+    dated = growth_table.date_elements(grown)
+    atomic.write_text(outputs["geojson"], geojson.format_geojson(dated, grown.evidence))
+    if "ifc" in outputs:
+        _write_model(grown, outputs["ifc"], version)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, export["dxf_unit"]))
     atomic.write_text(outputs["summary"], "\n".join([title, *lines, ""]))
     log.log_line(f"grow_plan: {'; '.join(lines)}")
+
+
+def _write_model(grown: Grown, output: FilePath, version: str) -> None:
+    # not of a plan without a model
+    from scanplan.exports import ifc
+    from scanplan.exports.changes import annotated_ifc
+
+    ids = element_ids.ids_from_places(grown.plan)
+    origin = ModelOrigin(version=version or "not stated")
+    atomic.write_text(output, ifc.format_ifc(grown.plan, ids, origin))
+    ages = growth_table.state_ages(grown, ids)
+    text = annotated_ifc.annotate_model(output, "Scanplan_Surveys", ages)
+    atomic.write_text(output, text)
 
 
 if __name__ == "__main__":

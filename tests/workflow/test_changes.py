@@ -106,8 +106,17 @@ def test_the_later_model_says_which_wall_moved(compared):
 
 def test_the_plan_of_both_has_the_wall_where_it_is_now(compared):
     folder = compared.folder / "results/after/grown"
-    assert {file.name for file in folder.iterdir()} == {f"grown.{s}" for s in dataset.GROWN}
+    wanted = {f"grown.{suffix}" for suffix in (*dataset.GROWN, "ifc")}
+    assert {file.name for file in folder.iterdir()} == wanted
     features = json.loads((folder / "grown.geojson").read_text())["features"]
+    of_walls = [f["properties"] for f in features if f["properties"]["kind"] == "wall"]
+    assert {of["last_seen"] for of in of_walls} <= {"before", "after"}
+    assert all(of["age_days"] >= 0 and 0 < of["p_stands"] <= 1 for of in of_walls)
+    assert all(0 < of["p_true"] <= 1 for of in of_walls)
+    model = ifcopenshell.open(folder / "grown.ifc")
+    sets = [ifcopenshell.util.element.get_psets(wall) for wall in model.by_type("IfcWall")]
+    stated = [of["Scanplan_Surveys"] for of in sets]
+    assert sorted(of["LastSeen"] for of in stated) == sorted(of["last_seen"] for of in of_walls)
     walls = [f["geometry"]["coordinates"] for f in features if f["properties"]["kind"] == "wall"]
     inner = [x for (x, y0), (x1, y1) in walls if abs(x - x1) < 0.1 < abs(y1 - y0) and 2 < x < 4]
     assert inner == pytest.approx([NEW_M] * len(inner), abs=0.03) and inner

@@ -61,6 +61,7 @@ if len(GIVEN) > 1:
         input:
             unpack(plans_until),
         output:
+            **model_of_all(),
             table="results/{dataset}/grown/grown.parquet",
             csv="results/{dataset}/grown/grown.csv",
             geojson="results/{dataset}/grown/grown.geojson",

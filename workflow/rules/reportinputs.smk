@@ -137,7 +137,16 @@ def grown_datasets(wildcards):
     """The plan of all given surveys of a floor, and what changed from each to the next."""
     files = changes_of_datasets(wildcards)
     latest = list(GIVEN)[-1]
-    return [f"results/{latest}/grown/grown.{suffix}" for suffix in GROWN] + files
+    suffixes = (*GROWN, *model_of_all())
+    return [f"results/{latest}/grown/grown.{suffix}" for suffix in suffixes] + files
+
+
+def model_of_all():
+    """The building model of the plan of all given surveys, where each of them has one."""
+    has_model = all(
+        "ifc" in of.settings["plan"]["export"]["formats"] for of in GIVEN.values()
+    )
+    return {"ifc": "results/{dataset}/grown/grown.ifc"} if has_model else {}
 
 
 def changes_of_datasets(wildcards):

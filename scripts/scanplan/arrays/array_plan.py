@@ -14,6 +14,7 @@ from scanplan.arrays.given_scans import GivenScans, Placed, PlacedScans, read_gi
 from scanplan.extraction import extractors, segments
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan, make_floorplan
+from scanplan.plan.floorplan_files import join_rated
 from scanplan.plan.model import fronts
 from scanplan.project import stage_settings
 from scanplan.rays import free_space, levels, ray_set
@@ -25,6 +26,7 @@ from scanplan.stage import workers
 from scanplan.store import registered_scans, scan_cache
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
+from scanplan.validation import confidence, left_out_scans, prediction
 
 _ORIGIN = "scans"  # what messages name in the place of a file
 _METHOD = "wall_length"
@@ -189,6 +191,21 @@ def _register(given: GivenScans, poses: npt.ArrayLike, threads: int) -> Register
     results.check_any_kept(verdicts, sum(scan.n_dropped for scan in given.scans), _ORIGIN)
     columns = results.registration_columns(survey.scan_ids, given.t_ns, verdicts)
     return registered_scans.select_kept_scans(columns, _ORIGIN)
+
+
+def rate_plan(made: ArrayPlan, placed: Placed) -> FloorPlan:
+    """Return a plan with how likely its elements are right, by rays of scans not chosen."""
+    limits = prediction.ValidationSettings(**stage_settings.select_validation(placed.settings))
+    rays = left_out_scans.draw_left_out_rays(
+        *(placed, placed.known, made.chosen_ids),
+        (made.drawn.storey_m[0], made.drawn.ceiling_z_m),
+        max_scans=limits.max_scans,
+        max_rays=limits.max_rays,
+        seed=limits.seed,
+    )
+    found = prediction.validate_by_rays(made.drawn, rays, limits)
+    rated = confidence.rate_elements(made.drawn, found.elements, limits.max_sigma_m)
+    return join_rated(made.drawn, rated)
 
 
 def _choose_scans(placed: Placed) -> IntArray:

@@ -1,6 +1,6 @@
 """Scans, poses and settings as a program gives them, checked."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -57,7 +57,7 @@ class Placed(Protocol):
         """How many points each scan has, (n,) int64."""
         ...
 
-    def scans(self, scan_ids: IntArray | None = None) -> Iterator[tuple[int, FloatArray]]:
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
         ...
 
@@ -88,9 +88,10 @@ class PlacedScans:
         """How many points each scan has, (n,) int64."""
         return np.array([len(self._given.scans[i].xyz_m) for i in self.scan_ids], np.int64)
 
-    def scans(self, scan_ids: IntArray | None = None) -> Iterator[tuple[int, FloatArray]]:
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
-        rows = self.rows(self.scan_ids if scan_ids is None else scan_ids)
+        wanted = self.scan_ids if scan_ids is None else np.array([*scan_ids], np.int64)
+        rows = self.rows(wanted)
         for i, row in zip(self.scan_ids[rows].tolist(), rows, strict=True):
             pose = self.known.map_from_sensor[row]
             yield i, move_to_map(i, self._given.scans[i].xyz_m, pose).astype(np.float32)

@@ -9,10 +9,10 @@ from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
 from scanplan.changes.seen_faces import list_seen_faces
-from scanplan.changes.surveys import RaySight, ScanReader, Survey, find_free_floor, read_rays
+from scanplan.changes.surveys import RaySight, Survey, find_free_floor, read_rays
 from scanplan.changes.verdicts import SIGMAS, Change
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.store.registered_scans import RegisteredScans
+from scanplan.store.registered_scans import RegisteredScans, ScanReader
 from scanplan.store.schemas import COLUMN, PIECE
 
 Scans = tuple[ScanReader, RegisteredScans]

@@ -3,8 +3,6 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from scanplan.changes import comparison
 from scanplan.changes.comparison import Comparison, Scans
 from scanplan.changes.contributions import Contribution, rate_contributions
@@ -52,7 +50,7 @@ class Grown:
 
 
 Assemble = Callable[[JoinedScans], tuple[FloorPlan, Columns]]
-"""What makes a plan of scans, and the evidence of its walls."""
+"""What makes a plan of scans and rates it, and the evidence of its walls."""
 
 
 def grow_plan(
@@ -81,7 +79,7 @@ def grow_plan(
         drives.append(place_drive(own, plan, step.tie.fit.motion, first))
         joined = JoinedScans(drives, settings)
         drawn, evidence = assemble(joined)
-        known = _leave_unrated(drawn), (joined, joined.known)
+        known = drawn, (joined, joined.known)
         steps.append(step)
     contributions = rate_contributions(
         known[0],
@@ -101,12 +99,6 @@ def grow_plan(
         steps,
         contributions,
     )
-
-
-def _leave_unrated(plan: FloorPlan) -> FloorPlan:
-    """Return a plan whose walls were rated by nobody as one that says so."""
-    unknown = np.full(len(plan.walls["wall"]), np.nan)
-    return replace(plan, walls={**plan.walls, "p_true": unknown})
 
 
 def _see(drive: Drive, plan: FloorPlan, first: FloorPlan, step: Comparison) -> Survey:

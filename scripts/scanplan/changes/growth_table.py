@@ -1,7 +1,8 @@
 """What surveys contributed to a plan of all, as a table and in words."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -9,9 +10,11 @@ import numpy as np
 from scanplan.changes import change_table
 from scanplan.changes.contributions import Contribution, sum_lengths_m
 from scanplan.changes.growth import Grown
-from scanplan.plan.floorplan import say_count
-from scanplan.types import Array
+from scanplan.plan.floorplan import FloorPlan, say_count
+from scanplan.types import Array, Columns
 
+_TABLES = {"wall": "walls", "opening": "openings", "room": "rooms"}
+_AGES = ("last_seen", "age_days", "p_stands")
 _AGED = 0.5  # of days: surveys of one day are of one age
 
 
@@ -34,6 +37,40 @@ def tabulate_contributions(grown: Grown) -> dict[str, Array]:
         "p_stands": np.array([of.p_stands for of, *_ in rows], float),
         **sizes,
     }
+
+
+def date_elements(grown: Grown) -> FloorPlan:
+    """Return the plan of all, its tables with which survey saw an element last, and how it aged.
+
+    The columns are `last_seen`, the survey's name, `age_days` and `p_stands`, as of
+    `schemas.CONTRIBUTIONS`.
+    """
+    parts = {}
+    for key, table in _TABLES.items():
+        columns: Columns = getattr(grown.plan, table)
+        shown = {of.number: of for of in grown.contributions if of.table == key}
+        listed = [shown.get(number) for number in columns[key].tolist()]
+        aged = {
+            "last_seen": np.array([grown.names[of.last] if of else "" for of in listed], object),
+            "age_days": np.array([of.age_days if of else np.nan for of in listed], float),
+            "p_stands": np.array([of.p_stands if of else np.nan for of in listed], float),
+        }
+        parts[table] = {**columns, **aged}
+    return replace(grown.plan, **parts)
+
+
+def state_ages(grown: Grown, ids: Mapping[str, Sequence[str]]) -> dict[str, dict[str, str | float]]:
+    """Return the same as properties of a building model, by the GlobalIds of tables' elements."""
+    dated = date_elements(grown)
+    stated = {}
+    for key, guids in ids.items():
+        columns: Columns = getattr(dated, _TABLES[key])
+        rows = zip(*(columns[name].tolist() for name in _AGES), strict=True)
+        for guid, (name, age_days, p_stands) in zip(guids, rows, strict=True):
+            if name:
+                aged = {"last_seen": name, "age_days": round(age_days, 1)}
+                stated[guid] = aged | {"still_stands": round(p_stands, 4)}
+    return stated
 
 
 def state_surveys(grown: Grown) -> dict[str, str]:
@@ -63,9 +100,7 @@ def _summarise_stale(found: Sequence[Contribution]) -> str:
     if not stale:
         return "the latest survey saw all of it"
     counts = [
-        say_count(n, table)
-        for table in ("wall", "opening", "room")
-        if (n := sum(of.table == table for of in stale))
+        say_count(n, table) for table in _TABLES if (n := sum(of.table == table for of in stale))
     ]
     oldest = max(of.age_days for of in stale)
     age = f", up to {oldest:.0f} days before" if oldest >= _AGED else ""

@@ -1,6 +1,6 @@
 """A survey as it is compared with another: its plan, its faces, and rays of its scans."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
@@ -17,25 +17,12 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.rays.tolerances import SKIRTING_M
-from scanplan.store.registered_scans import RegisteredScans
+from scanplan.store.registered_scans import RegisteredScans, ScanReader
 from scanplan.types import FloatArray, IntArray
 
 _MOST_SCANS = 300  # evenly over the drive: every wall of a floor is seen by many of them
 _MOST_RAYS = 3_000_000  # of all of them: 100 MB, and a second to sort
 _OPEN_M = 0.1  # below the ceiling nothing is asked: of a lintel or a beam
-
-
-class ScanReader(Protocol):
-    """Registered scans as a `tables.ScanStore` reads them."""
-
-    @property
-    def planar(self) -> bool:
-        """Whether the sensor measures in one plane only."""
-        ...
-
-    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
-        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans or of those asked for."""
-        ...
 
 
 class Sight(Protocol):

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -87,6 +88,14 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         ],
         **assumed_m,
     )
+
+
+def join_rated(plan: FloorPlan, rated: Columns) -> FloorPlan:
+    """Return a plan whose walls, openings and rooms have the columns of `schemas.CONFIDENCE`."""
+    parts = {
+        table: _join_confidence(table, getattr(plan, table), rated, _UNSEEN) for table in NUMBERS
+    }
+    return replace(plan, **parts)
 
 
 def format_nearly(nearly: Sequence[Nearly]) -> str:

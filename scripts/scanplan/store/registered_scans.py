@@ -1,6 +1,8 @@
 """The registered scans of a dataset: ids, stamps, poses, and the rows of other tables' scans."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -8,6 +10,19 @@ from scanplan.errors import StageError
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import covariance_matrices, pose_matrices
 from scanplan.types import Array, Columns, FilePath, FloatArray, IntArray
+
+
+class ScanReader(Protocol):
+    """Registered scans as a `tables.ScanStore` reads them."""
+
+    @property
+    def planar(self) -> bool:
+        """Whether the sensor measures in one plane only."""
+        ...
+
+    def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
+        """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans or of those asked for."""
+        ...
 
 
 @dataclass(frozen=True)

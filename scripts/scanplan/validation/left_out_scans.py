@@ -6,13 +6,12 @@ import numpy as np
 
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.rays.tolerances import SKIRTING_M
-from scanplan.store.registered_scans import RegisteredScans
-from scanplan.store.tables import ScanStore
+from scanplan.store.registered_scans import RegisteredScans, ScanReader
 from scanplan.types import FloatArray, IntArray
 
 
 def draw_left_out_rays(
-    store: ScanStore,
+    store: ScanReader,
     registered: RegisteredScans,
     chosen_ids: IntArray,
     storey_z_m: tuple[float, float],
@@ -50,7 +49,7 @@ def draw_left_out_scans(left_out_ids: IntArray, max_scans: int, seed: int) -> In
 
 
 def draw_rays(
-    store: ScanStore,
+    store: ScanReader,
     scan_ids: IntArray,
     sensors_m: FloatArray,
     storey_z_m: tuple[float, float],
