@@ -4,14 +4,17 @@ Faces, walls, openings and rooms, each drawn once.
 """
 
 import functools
+import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from scanplan.design import design_prior, design_reading
 from scanplan.plan import messages, planning
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan, make_floorplan
 from scanplan.plan.floorplan_files import format_nearly
 from scanplan.plan.model import fronts
 from scanplan.rays import free_space, levels, ray_set
@@ -30,6 +33,8 @@ def assemble_plan(
     outputs: Mapping[str, FilePath],
     *,
     settings: Settings,
+    design: FilePath | None = None,
+    storey: str | int | None = None,
     threads: int = 1,
     **stop: Any,
 ) -> None:
@@ -44,6 +49,10 @@ def assemble_plan(
         Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
     settings : dict
         Keywords of `planning.make_plan_settings`.
+    design : path-like, optional
+        What the floor is likelier to be as, an .ifc or .dxf file: a first plan ties its frame.
+    storey : str or int, optional
+        Of the design, by name or number from below.
     threads : int
         Cores to use; the plan does not depend on it.
     **stop
@@ -81,7 +90,8 @@ def assemble_plan(
         )
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
-        plan = planning.make_plan(
+        make_plan = functools.partial(
+            planning.make_plan,
             segments,
             rays,
             poses[:, :2, 3],
@@ -93,7 +103,16 @@ def assemble_plan(
             find_dense=find_dense,
             threads=threads,
         )
-    messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)
+        plan = make_plan()
+        messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)
+        if design is not None:
+            found = {name: getattr(plan, name) for name in planning.TABLES}
+            first = make_floorplan(found, math.nan, math.nan, "the survey")
+            known = design_reading.read_design(design)
+            designed, told = design_prior.lay_design(known, Path(design).name, first, storey)
+            for line in told:
+                log.log_warning(f"assemble_plan: {line}")
+            plan = make_plan(designed=designed)
     heights_m, sparse = wait_for_rays()
     drawn = FloorPlan(
         name="",
@@ -146,6 +165,8 @@ if __name__ == "__main__":
             snakemake.input.registration,
             dict(snakemake.output.items()),
             **snakemake.params.stop,
+            design=snakemake.input.get("design") or None,
+            storey=snakemake.params.storey,
             settings=snakemake.params.settings,
             threads=snakemake.threads,
         )

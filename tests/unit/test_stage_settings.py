@@ -33,6 +33,7 @@ OF_THE_WORKFLOW = {
     "plan.extractor",
     "plan.export.formats",
     "plan.design.file",
+    "plan.design.prior",
     "plan.design.tolerances",
     "simulate.building",
     "simulate.recording",

@@ -162,7 +162,7 @@ class TestLowParts:
         """Of the part that rays pass over it is told; how high it is says nothing of a wall."""
         asked = []
 
-        def keep(features):
+        def keep(features, _known):
             asked.extend(features)
             return np.eye(4)[[things.WALL] * len(features)]
 
@@ -178,7 +178,7 @@ class TestLowParts:
         self, monkeypatch, p_wall, n_nearly
     ):
         p = np.array([[1.0, 0, 0, 0], [p_wall, 1 - p_wall, 0, 0]])
-        monkeypatch.setattr(things, "weigh_things", lambda features: p)
+        monkeypatch.setattr(things, "weigh_things", lambda *_: p)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
         found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
         assert [part.p_wall for part in found.walls] == [1.0]

@@ -410,6 +410,14 @@ def corrections(wildcards):
     return local(file) if file else []
 
 
+def design_as_prior(wildcards):
+    """The design that the plan of the job's dataset is likelier to be as, where it is told to be."""
+    found = DATASETS[wildcards.dataset]
+    if not found.settings["plan"]["design"]["prior"]:
+        return []
+    return or_end(choose_design, wildcards.dataset, found.designs)
+
+
 def plan_extractor_settings(wildcards):
     """Settings of the extractor whose walls make the plan."""
     settings = DATASETS[wildcards.dataset].settings

@@ -5,6 +5,7 @@ rule assemble_plan:
         selection=plan_selection,
         scans="results/{dataset}/scans.parquet",
         registration="results/{dataset}/registration.parquet",
+        design=design_as_prior,
     output:
         faces="results/{dataset}/plan/faces.parquet",
         walls="results/{dataset}/plan/walls.parquet",
@@ -25,6 +26,7 @@ rule assemble_plan:
         code=code_of("assemble_plan"),
         stop=section("selection", "stop"),
         settings=setting(stage_settings.select_plan),
+        storey=section("plan", "design", "storey"),
     script:
         "../../scripts/assemble_plan.py"
 

@@ -16,6 +16,24 @@ _NEARLY = 0.9  # of the walls of the best storey: as different as two surveys of
 
 
 @dataclass(frozen=True, eq=False)
+class TiedStorey:
+    """The storey of a design that a plan fits best.
+
+    Attributes
+    ----------
+    storey : DrawnStorey
+    tie : FrameTie
+        The design is a.
+    alike : sequence of str
+        Other storeys that fit nearly as well.
+    """
+
+    storey: DrawnStorey
+    tie: FrameTie
+    alike: Sequence[str]
+
+
+@dataclass(frozen=True, eq=False)
 class AsBuilt:
     """A survey against a storey of a design.
 
@@ -54,6 +72,28 @@ def compare_design(
     Raises
     ------
     StageError
+        See `tie_storey`.
+    """
+    tied = tie_storey(storeys, source, plan, chosen)
+    storey, tie = tied.storey, tied.tie
+    design = see_design(storey, f"{source}, {storey.name}")
+    built = comparison.place_survey(plan, scans, tie.fit.motion, tie)
+    return AsBuilt(storey, comparison.compare_placed(design, built, tie), tied.alike)
+
+
+def tie_storey(
+    storeys: Sequence[DrawnStorey], source: str, plan: FloorPlan, chosen: str | int | None = None
+) -> TiedStorey:
+    """Tie the frame of a plan to that of the storey that it fits best.
+
+    Parameters
+    ----------
+    storeys, source, chosen
+        As of `compare_design`.
+
+    Raises
+    ------
+    StageError
         If there is no such storey, or none of those that are tried fits.
     """
     tried = storeys
@@ -76,12 +116,10 @@ def compare_design(
     storey, tie = max(ties, key=lambda of: of[1].fit.matched_m)
     least_m = _NEARLY * tie.fit.matched_m
     alike = [of.name for of, t in ties if of is not storey and t.fit.matched_m >= least_m]
-    design = see_design(storey, f"{source}, {storey.name}")
-    built = comparison.place_survey(plan, scans, tie.fit.motion, tie)
-    return AsBuilt(storey, comparison.compare_placed(design, built, tie), alike)
+    return TiedStorey(storey, tie, alike)
 
 
-def warn_of_alike(found: AsBuilt) -> str:
+def warn_of_alike(found: AsBuilt | TiedStorey) -> str:
     """Return in words which other storeys fit nearly as well; nothing where none does."""
     if not found.alike:
         return ""

@@ -19,6 +19,7 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
@@ -171,6 +172,7 @@ def make_plan(
     *,
     find_seen: Callable[[], BaseGeometry] | None = None,
     find_dense: Callable[[], RaySet] | None = None,
+    designed: DesignedWalls | None = None,
     threads: int = 1,
 ) -> Plan:
     """Make a plan.
@@ -198,6 +200,8 @@ def make_plan(
     find_dense : callable, optional
         Returns the rays of planar scans from all along the way, chosen or not, see
         `fronts.gather_dense_rays`: panes are found by them. By default they are the chosen ones'.
+    designed : DesignedWalls, optional
+        A design that walls are likelier to be as, in the map frame.
     threads : int
         Cores to use; the plan does not depend on it.
 
@@ -221,7 +225,7 @@ def make_plan(
     if find_dense is not None:
         dense = find_dense()
         dense = range_bias.remove_range_bias(dense, errors_m, _stand_plumb(dense), threads)
-    survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, threads)
+    survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, designed, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
@@ -320,6 +324,7 @@ class _Survey:
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
     find_seen : callable, optional
+    designed : DesignedWalls, optional
         As in `make_plan`.
     threads : int
     """
@@ -330,6 +335,7 @@ class _Survey:
     track_m: FloatArray
     find_free: Callable[[], _Free]
     find_seen: Callable[[], BaseGeometry] | None
+    designed: DesignedWalls | None
     threads: int
 
     @property
@@ -363,6 +369,7 @@ class _Survey:
             *(walls, self.rays, self.track_m),
             max_opening_m=self.settings.openings.max_opening_m,
             max_door_m=self.settings.openings.max_door_m,
+            designed=self.designed,
         )
         glass = find_fronts(labelled.walls, self.dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(

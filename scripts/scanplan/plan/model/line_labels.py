@@ -62,6 +62,7 @@ def label_line(
     line: int,
     goes_on: tuple[bool, bool] = (False, False),
     crossed_m: FloatArray = NOWHERE_M,
+    known: FloatArray | None = None,
 ) -> list[Stretch]:
     """Return the most probable stretches of a line, in order.
 
@@ -74,9 +75,12 @@ def label_line(
         Whether it begins, and ends, beyond what was seen of it, at the next wall.
     crossed_m : (n, 2) float64, optional
         From where to where other walls cross it.
+    known : (c, k) float64, optional
+        How much likelier each kind is in each column by what else is known of it, log.
     """
     labels = priors.list_labels(counts.ends.shape[1], line=line)
     likely = weigh_columns(counts, labels)
+    likely = likely if known is None else likely + known[:, labels.kind]
     crossed = (crossed_m - counts.first_m) / COLUMN_M
     chain = _Chain(labels, likely, line=line, goes_on=goes_on, crossed=crossed)
     shares = chain.kind_shares()

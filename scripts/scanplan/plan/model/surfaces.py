@@ -1,10 +1,15 @@
 """The surfaces of a plan by the model: walls with what their lines' labels show, and leaves."""
 
+import functools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from scanplan.plan.model import glass_views, line_ends, line_labels, things, wall_labels
+from scanplan.plan.model.designed_walls import DesignedWalls
+from scanplan.plan.model.surface_counts import COLUMN_M
 from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.rays.ray_set import RaySet
@@ -40,6 +45,7 @@ def label_surfaces(
     *,
     max_opening_m: float,
     max_door_m: float,
+    designed: DesignedWalls | None = None,
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -54,14 +60,19 @@ def label_surfaces(
         What is open for longer parts a wall in two.
     max_door_m : float
         Walls go on for a door as wide to the next one.
+    designed : DesignedWalls, optional
+        What makes labels, and walls, likelier.
     """
-    parts = [
-        (part, top_m)
-        for wall in walls
-        for part, top_m in wall_labels.label_wall(wall, rays, track_m, max_opening_m=max_opening_m)
-    ]
+    label = functools.partial(
+        wall_labels.label_wall,
+        rays=rays,
+        track_m=track_m,
+        max_opening_m=max_opening_m,
+        designed=designed,
+    )
+    parts = [found for wall in walls for found in label(wall)]
     found = observe_surfaces([part for part, _ in parts], rays)
-    p = things.weigh_things(found)
+    p = things.weigh_things(found, _weigh_designed([part for part, _ in parts], designed))
     kinds = things.choose_kinds(p)
     weighed = list(zip(parts, kinds, p[:, things.WALL].tolist(), strict=True))
     kept = [
@@ -74,7 +85,7 @@ def label_surfaces(
         for (part, _), kind, p_wall in weighed
         if kind != things.WALL and p_wall >= line_labels.NEARLY
     ]
-    kept = list(_label_among(kept, rays, track_m, max_opening_m, max_door_m))
+    kept = list(_label_among(kept, label, max_door_m))
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end
@@ -86,9 +97,7 @@ def label_surfaces(
 
 def _label_among(
     parts: Sequence[tuple[PlanWall, float]],
-    rays: RaySet,
-    track_m: FloatArray,
-    max_opening_m: float,
+    label: Callable[..., Iterator[tuple[PlanWall, float]]],
     max_door_m: float,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield walls and their tops, those labelled anew that others are ahead of or cross."""
@@ -98,14 +107,17 @@ def _label_among(
     for (wall, top_m), whole, crossed_m in zip(parts, longer, crossed, strict=True):
         is_open = len(crossed_m) > 1 and wall.openings
         if math.isnan(top_m) and (whole.length_m > wall.length_m or is_open):
-            yield from wall_labels.label_wall(
-                *(wall, rays, track_m),
-                max_opening_m=max_opening_m,
-                longer=whole,
-                crossed_m=crossed_m,
-            )
+            yield from label(wall, longer=whole, crossed_m=crossed_m)
         else:
             yield wall, top_m
+
+
+def _weigh_designed(parts: Sequence[PlanWall], designed: DesignedWalls | None) -> FloatArray | None:
+    if designed is None:
+        return None
+    places_m = [np.arange(part.low_m, part.high_m, COLUMN_M) for part in parts]
+    weights = [designed.weigh_wall(of.line, at) for of, at in zip(parts, places_m, strict=True)]
+    return np.array(weights, float)
 
 
 def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:

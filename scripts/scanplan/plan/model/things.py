@@ -173,7 +173,7 @@ _KNOWN = 30.0  # surfaces of other buildings that a building's own shares are we
 _ROUNDS = 30
 
 
-def weigh_things(found: Sequence[Features]) -> FloatArray:
+def weigh_things(found: Sequence[Features], known: FloatArray | None = None) -> FloatArray:
     """Return the probability (n, 4) of each of `KINDS` for each surface of a building.
 
     How much of it is furniture it says itself: shares are found by expectation maximisation, from
@@ -183,10 +183,15 @@ def weigh_things(found: Sequence[Features]) -> FloatArray:
     Parameters
     ----------
     found : sequence of surface_features.Features
+    known : (n,) float64, optional
+        How much likelier each is a wall by what else is known of it, log.
     """
     values = np.array([[getattr(of, name) for name in DENSITIES] for of in found], float)
     values = values.reshape(len(found), len(DENSITIES))
     likely = weigh_features(values, [density.shares for density in DENSITIES.values()])
+    if known is not None:
+        # features of an answer say the same in part, what is known beside them does not
+        likely[:, WALL] += known / TEMPER
     shares = np.array(SHARES)
     for _ in range(_ROUNDS):
         own = np.exp(weigh_kinds(likely, shares, TEMPER)).sum(axis=0)

@@ -10,6 +10,7 @@ from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.model import line_ends, line_labels, opening_edges, priors, surface_counts
+from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.model.surface_counts import AT_M, COLUMN_M, Side, SurfaceCounts
 from scanplan.plan.openings import CLOSED, Opening
@@ -38,6 +39,7 @@ def label_wall(
     max_opening_m: float,
     longer: PlanWall | None = None,
     crossed_m: FloatArray = line_labels.NOWHERE_M,
+    designed: DesignedWalls | None = None,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -54,6 +56,8 @@ def label_wall(
         The same as far as it may go on, see `line_ends.lengthen_walls`.
     crossed_m : (n, 2) float64, optional
         From where to where other walls cross it: what is open from one to another parts it, too.
+    designed : DesignedWalls, optional
+        What makes labels likelier.
     """
     whole = longer or wall
     counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, track_m)
@@ -63,6 +67,7 @@ def label_wall(
         line=priors.INNER if wall.right else priors.OUTER,
         goes_on=goes_on,
         crossed_m=crossed_m,
+        known=designed and designed.weigh_labels(wall.line, counts.middles_m),
     )
     stretches[-1] = replace(stretches[-1], high_m=whole.high_m)
     stretches = line_ends.end_where_seen(stretches, wall.low_m, wall.high_m)
