@@ -16,6 +16,7 @@ from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.plan import floorplan_files
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import building_file, code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -114,7 +115,8 @@ def _compose_sheets(
     for number, (storey, own) in enumerate(zip(storeys, settings, strict=True)):
         paths = {table: files[table][number] for table in files if table != "ifc"}
         assumed_m = {key: own[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-        plans.append(floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m))
+        plan = floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m)
+        plans.append(scale_floorplan(plan))
         evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
         stated = {"project": own["project"] or name, "storey": storey["name"]}
         stated |= {"version": common[number].version, "locale": common[number].locale}

@@ -5,10 +5,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.plan import planning, taped_lengths
+from scanplan.plan import planning, survey_scale
 from scanplan.plan.corrections import applying, georeference, rows
+from scanplan.plan.survey_scale import state_scale
 from scanplan.project import corrections_file
-from scanplan.project.corrections_file import Correction
+from scanplan.project.corrections_file import LENGTH, Correction
 from scanplan.stage import log
 from scanplan.store import schemas, tables
 from scanplan.types import Columns, FilePath
@@ -35,13 +36,22 @@ def correct_plan(
         for name, schema in planning.TABLES.items()
     }
     notes = tables.read_notes(plan["free"], schemas.FREE)
-    changed = rows.rows_of_plan(found, _find_floor_m(notes, found["walls"]))
+    floor_m = _find_floor_m(notes, found["walls"])
+    changed = rows.rows_of_plan(found, floor_m)
     outcome = applying.apply_corrections(changed, said)
-    for line in (*outcome.unmatched, *outcome.told):
-        log.log_warning(f"correct_plan: {line}")
     points = [correction for correction in said if correction.element == "reference_point"]
     checks = [correction for correction in said if correction.element == "check_point"]
-    reference = georeference.fit_reference(points, checks)
+    scale = survey_scale.fit_scale(outcome.lengths_m, georeference.read_points(points))
+    factor = 1.0 if scale is None else scale.applied
+    if factor != 1.0:
+        # sizes are those of a tape, and the plan is in metres of the map
+        changed = rows.rows_of_plan(found, floor_m)
+        outcome = applying.apply_corrections(changed, [c.divide_sizes(factor) for c in said])
+    taped = [correction for correction in said if correction.element == LENGTH]
+    off = _list_off(taped, outcome.lengths_m, factor)
+    for line in (*outcome.unmatched, *outcome.told, *off):
+        log.log_warning(f"correct_plan: {line}")
+    reference = georeference.fit_reference(points, checks, factor)
     notes |= {"n_corrections": str(outcome.n_applied)}
     unmatched = [line.removeprefix(f"{corrections}: ") for line in outcome.unmatched]
     notes |= {"unmatched_corrections": json.dumps(unmatched)} if unmatched else {}
@@ -50,12 +60,10 @@ def correct_plan(
     if reference is not None:
         notes |= {"georeference": georeference.format_reference(reference)}
         placed = f"; {len(points)} reference points agree within {reference.residual_m:.2f} m"
-    if outcome.lengths_m:
-        scale, sigma = taped_lengths.fit_scale(outcome.lengths_m)
-        notes |= {"lengths": json.dumps(outcome.lengths_m)}
-        by_tape = f"{100 * (scale - 1):+.2f} % longer, within {100 * sigma:.2f} %"
-        n_lengths = len(outcome.lengths_m)
-        log.log_line(f"correct_plan: {n_lengths} taped lengths would have the plan {by_tape}")
+    notes |= {"lengths": json.dumps(outcome.lengths_m)} if outcome.lengths_m else {}
+    if scale is not None:
+        notes |= {"scale": json.dumps(vars(scale))}
+        log.log_line(f"correct_plan: {state_scale(scale)}")
     made = found | rows.columns_of_plan(changed)
     for name, schema in planning.TABLES.items():
         own = notes if name == "free" else None
@@ -64,6 +72,20 @@ def correct_plan(
         f"correct_plan: {outcome.n_applied} of {len(said) - len(points) - len(checks)} corrections"
         f" applied{placed}"
     )
+
+
+def _list_off(
+    taped: Sequence[Correction], lengths_m: Sequence[Sequence[float]], factor: float
+) -> list[str]:
+    """Return a line on each taped length that the plan does not have, at its scale."""
+    told = []
+    for correction, (drawn_m, taped_m, sigma_m) in zip(taped, lengths_m, strict=True):
+        off = (factor * drawn_m - taped_m) / sigma_m
+        if abs(off) > survey_scale.SIGNIFICANT:
+            by = f"{factor * drawn_m:.3f} m are drawn where {taped_m:.3f} m were taped"
+            remedy = "tape it again, or move the wall that is wrong"
+            told.append(f"{correction.entry}: {by}, {abs(off):.1f} sigma apart; {remedy}")
+    return told
 
 
 def _find_floor_m(notes: Mapping[str, str], walls: Columns) -> float:

@@ -11,6 +11,7 @@ from scanplan.errors import StageError
 from scanplan.exports.data import point_cloud
 from scanplan.exports.data.cloud_picture import CloudPicture
 from scanplan.exports.model_origin import find_site
+from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import GeoReference
 from scanplan.recordings.survey import open_colours
 from scanplan.selection import stopping
@@ -65,7 +66,7 @@ def export_cloud(
         clouds = log.report_progress(store.scans(wanted), "export_cloud", total=len(wanted))
         n_points, n_kept = point_cloud.write_laz(
             temporary,
-            _draw(_colour(clouds, read_colours), picture),
+            _draw(_colour(clouds, read_colours), picture, _read_factor(free)),
             settings["cell_m"],
             t_ns,
             site,
@@ -101,12 +102,18 @@ def _colour(
         yield scan_id, xyz_m, rgb
 
 
+def _read_factor(free: FilePath) -> float:
+    """Return by what lengths of the map are corrected."""
+    scale = floorplan_files.read_scale(tables.read_notes(free, schemas.FREE))
+    return 1.0 if scale is None else scale.applied
+
+
 def _draw(
-    scans: Iterable[point_cloud.ScanPoints], picture: CloudPicture
+    scans: Iterable[point_cloud.ScanPoints], picture: CloudPicture, factor: float
 ) -> Iterator[point_cloud.ScanPoints]:
-    for scan in scans:
-        picture.add(*scan[1:])
-        yield scan
+    for scan_id, xyz_m, rgb in scans:
+        picture.add(xyz_m, rgb)
+        yield scan_id, factor * xyz_m, rgb
 
 
 if __name__ == "__main__":

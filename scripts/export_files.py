@@ -24,6 +24,7 @@ from scanplan.exports.grid_map import GridMap
 from scanplan.exports.model_origin import ModelOrigin, find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project.catalogue_file import read_catalogue
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
@@ -67,10 +68,11 @@ def export_files(
         Files of formats that were asked for before: they are removed, being of an older plan.
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    drawn = scale_floorplan(in_map)
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
-    ids = _identify_elements(drawn, outputs["ids"], outputs["known"], source)
+    ids = _identify_elements(in_map, outputs["ids"], outputs["known"], source)
     site = find_site(drawn.georeference, settings["site"])
     origin = ModelOrigin(
         author=settings["author"] or "",
@@ -94,7 +96,7 @@ def export_files(
         ("keepout", grid_map.draw_keepout, "trinary"),
         ("speed", grid_map.draw_speed, "raw"),
     ):
-        writers |= _write_mask(mask, lambda draw=draw: draw(drawn, settings["map_cell_m"]), mode)
+        writers |= _write_mask(mask, lambda draw=draw: draw(in_map, settings["map_cell_m"]), mode)
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
@@ -107,7 +109,8 @@ def export_files(
     for file in unwanted:
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
-        layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered)
+        factor = 1.0 if drawn.scale is None else drawn.scale.applied
+        layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered, factor)
         layers |= wayfinding.imdf_layers(drawn, rows)
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
@@ -190,9 +193,12 @@ def _format_localiser(path: FilePath) -> str:
     return tum.format_tum(known["t_ns"], pose_matrices(known))
 
 
-def _way_layers(registered: RegisteredScans) -> dict[str, geopackage.Layer]:
-    """Return the sensor's way, and where it took the registered scans, as layers."""
-    places_m = registered.map_from_sensor[:, :2, 3]
+def _way_layers(registered: RegisteredScans, factor: float) -> dict[str, geopackage.Layer]:
+    """Return the sensor's way, and where it took the registered scans, as layers.
+
+    Places of the map are multiplied by the factor of the plan's lengths.
+    """
+    places_m = factor * registered.map_from_sensor[:, :2, 3]
     # one scan alone is a way of no length
     way_m = places_m if len(places_m) > 1 else np.repeat(places_m, 2, axis=0)
     way = np.array([shapely.LineString(way_m)], object)

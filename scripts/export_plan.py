@@ -13,6 +13,7 @@ from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan, floorplan_files
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import code_files
 from scanplan.recordings import clocks
 from scanplan.stage import figure_files, log
@@ -51,7 +52,8 @@ def export_plan(
     told = receiver or {}
     evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    drawn = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    drawn = scale_floorplan(in_map)
     site = find_site(drawn.georeference, settings["site"])
     facts = summarise_survey(
         evidence,
@@ -65,7 +67,8 @@ def export_plan(
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)
     figure = drawing.draw_sheet(sheet)
-    grid = grid_map.draw_grid_map(drawn, settings["map_cell_m"])
+    # a robot finds its way in metres of its own map
+    grid = grid_map.draw_grid_map(in_map, settings["map_cell_m"])
     atomic.write_text(outputs["geojson"], geojson.format_geojson(drawn, evidence, site))
     cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
     atomic.write_text(outputs["dxf"], cad)

@@ -12,6 +12,7 @@ from scanplan.exports.sheet.accuracy import SensorErrors
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import state_frame, summarise_survey
 from scanplan.plan import floorplan_files
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables
@@ -47,7 +48,8 @@ def export_presentation(
     """
     told = receiver or {}
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-    measured = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
+    measured = scale_floorplan(in_map)
     site = find_site(measured.georeference, settings["site"])
     facts = summarise_survey(
         tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True),

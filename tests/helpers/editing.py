@@ -12,6 +12,7 @@ from scanplan.exports.drafting.presentation import compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.sheet.composition import compose_sheet
 from scanplan.plan import floorplan_files, planning
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project.catalogue_file import read_catalogue
 from scanplan.store import schemas, tables
 
@@ -40,7 +41,7 @@ def read_plan(folder):
 
 def export(results, folder):
     """Write the files that may be edited, of the tables in a folder."""
-    plan = read_plan(folder)
+    plan = scale_floorplan(read_plan(folder))
     known = element_ids.no_known()
     kept = results / "plan/known_elements.parquet"
     if kept.exists():
@@ -70,6 +71,35 @@ def export(results, folder):
 def taken(results, path, by=""):
     """What the command tells of an edited file."""
     return take_edits(path, results, by)
+
+
+def edited_json(results, edit, name="plan.openplan3d.json"):
+    """The project after an edit of its floor, at another place."""
+    project = json.loads((results / "plan" / name).read_text())
+    edit(project["floors"][0])
+    path = results.parent / "edited.json"
+    path.write_text(json.dumps(project))
+    return path
+
+
+def wall_between(floor, x_m=4.05):
+    """The wall between both rooms."""
+    (wall,) = [w for w in floor["walls"] if abs(w["start"]["x"] - w["end"]["x"]) < 1
+               and abs(w["start"]["x"] - 100 * x_m) < 1]  # fmt: skip
+    return wall
+
+
+def move_wall(floor, x_m=4.05):
+    """Move it by 0.2 m to the east."""
+    wall = wall_between(floor, x_m)
+    wall["start"]["x"] += 20
+    wall["end"]["x"] += 20
+
+
+def write_entries(results, *entries):
+    """Let there be a file of corrections."""
+    place = results.parents[1] / "rec/corrections.yaml"
+    place.write_text(yaml.safe_dump({"corrections": list(entries)}))
 
 
 def entries_of(results):

@@ -9,7 +9,6 @@ import shapely
 from helpers import floorplan_making
 from helpers.correcting import corrected, write_plan
 from scanplan.exports.drafting.leaves import find_leaves, find_swings
-from scanplan.plan.taped_lengths import fit_scale
 from scanplan.report.wording import state_lengths
 from scanplan.store import schemas, tables
 
@@ -89,19 +88,18 @@ def test_what_was_taped_is_held_against_faces(plan, caplog):
     tape = {"element": "length", "action": "add", "line": [[0.1, 1.0], [3.9, 1.0]]}
     found = corrected(plan, tape | {"length_m": 4.004}, tape | {
         "line": [[2.0, 0.05], [2.0, 2.8]], "length_m": 3.1, "sigma_m": 0.003})  # fmt: skip
-    assert np.round(found.taped_m, 6).tolist() == [[4.0, 4.004, 0.005], [3.0, 3.1, 0.003]]
+    # with the tape's error that of two faces, 2 mm each
+    sigmas = [np.sqrt(25 + 8) / 1000, np.sqrt(9 + 8) / 1000]
+    assert found.taped_m == [
+        pytest.approx(of) for of in ([4.0, 4.004, sigmas[0]], [3.0, 3.1, sigmas[1]])
+    ]
     told = [line for line in caplog.messages if "were taped" in line]
     assert len([line for line in told if "entry 2: 3.000 m are drawn" in line]) == 1
     assert not any("entry 1: " in line for line in told)
     notes = tables.read_notes(plan["free"].parent / "corrected/free.parquet", schemas.FREE)
     assert len(json.loads(notes["lengths"])) == 2
-    assert "-4, -100 mm" in state_lengths(found)
-
-
-def test_a_scale_is_the_mean_of_lengths_by_their_weight():
-    # 2 m and 4 m with equal sigma weigh 4 and 16: (4 * 1.01 + 16 * 1.02) / 20
-    scale, sigma = fit_scale([(2.0, 2.02, 0.01), (4.0, 4.08, 0.01)])
-    assert scale == pytest.approx(1.018) and sigma == pytest.approx(0.01 / 20**0.5)
+    # both cannot be a scale
+    assert "-4, -100 mm" in state_lengths(found) and "not applied" in state_lengths(found)
 
 
 def test_a_room_that_goes_around_something_is_parted_by_two_lines(plan):

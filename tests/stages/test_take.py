@@ -9,9 +9,17 @@ import ifcopenshell.util.element
 import numpy as np
 import pytest
 import shapely
-import yaml
 
-from helpers.editing import entries_of, make_results, run_again, taken
+from helpers.editing import (
+    edited_json,
+    entries_of,
+    make_results,
+    move_wall,
+    run_again,
+    taken,
+    wall_between,
+    write_entries,
+)
 from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.dxf_reading import read_facts
 from scanplan.errors import StageError
@@ -30,15 +38,6 @@ def made(tmp_path_factory):
 def results(made, tmp_path):
     shutil.copytree(made.parents[1], tmp_path, dirs_exist_ok=True)
     return tmp_path / "results/office"
-
-
-def edited_json(results, edit, name="plan.openplan3d.json"):
-    """The project after an edit of its floor, at another place."""
-    project = json.loads((results / "plan" / name).read_text())
-    edit(project["floors"][0])
-    path = results.parent / "edited.json"
-    path.write_text(json.dumps(project))
-    return path
 
 
 def edited_ifc(results, edit, name="plan.ifc"):
@@ -81,19 +80,6 @@ def test_what_was_only_touched_in_the_editor_is_no_correction(results):
 def by_name(items, **known):
     (found,) = [item for item in items if all(item[k] == v for k, v in known.items())]
     return found
-
-
-def wall_between(floor):
-    """The wall between both rooms, at x = 4.05 m."""
-    (wall,) = [w for w in floor["walls"] if abs(w["start"]["x"] - w["end"]["x"]) < 1
-               and abs(w["start"]["x"] - 405) < 1]  # fmt: skip
-    return wall
-
-
-def move_wall(floor):
-    wall = wall_between(floor)
-    wall["start"]["x"] += 20
-    wall["end"]["x"] += 20
 
 
 def test_a_wall_moved_in_the_editor_is_moved_with_its_door(results):
@@ -468,11 +454,6 @@ def test_furniture_erased_in_the_drawing(results):
 
 
 # --- corrections that are there ---
-
-
-def write_entries(results, *entries):
-    place = results.parents[1] / "rec/corrections.yaml"
-    place.write_text(yaml.safe_dump({"corrections": list(entries)}))
 
 
 def test_what_was_said_before_stays_and_is_joined(results):

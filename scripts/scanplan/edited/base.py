@@ -11,6 +11,7 @@ from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
 from scanplan.plan import planning
 from scanplan.plan.corrections.rows import PlanRows, Row, rows_of_plan
+from scanplan.plan.floorplan_files import read_scale
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath
 
@@ -36,11 +37,14 @@ class EditedPlan:
         With the corrections that there were: what was edited.
     numbers : mapping of (str, str) to int
         Numbers of elements by their kind and GlobalId.
+    factor : float
+        By which the files' places are those of the map multiplied.
     """
 
     found: PlanRows
     shown: PlanRows
     numbers: Mapping[tuple[str, str], int]
+    factor: float = 1.0
 
     def find_row(self, element: Element) -> Row | None:
         """Return the row of an element that was edited; None of one that the plan has not."""
@@ -67,10 +71,13 @@ def read_edited_plan(results: Path) -> EditedPlan:
     folder = results / "plan"
     found = _read_rows(folder)
     corrected = folder / "corrected"
-    shown = _read_rows(corrected) if (corrected / "walls.parquet").exists() else _read_rows(folder)
+    edited = corrected if (corrected / "walls.parquet").exists() else folder
+    shown = _read_rows(edited)
+    scale = read_scale(tables.read_notes(edited / "free.parquet", schemas.FREE))
     ids = tables.read_table(folder / "ids.parquet", schemas.ELEMENT_IDS, allow_empty=True)
     named = zip(ids["kind"].tolist(), ids["global_id"].tolist(), strict=True)
-    return EditedPlan(found, shown, dict(zip(named, ids["number"].tolist(), strict=True)))
+    numbers = dict(zip(named, ids["number"].tolist(), strict=True))
+    return EditedPlan(found, shown, numbers, 1.0 if scale is None else scale.applied)
 
 
 def _read_rows(folder: Path) -> PlanRows:

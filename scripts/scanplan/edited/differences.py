@@ -26,6 +26,11 @@ class Change:
     before: Element | None
     after: Element | None
 
+    def divide_places(self, factor: float) -> "Change":
+        """Return it with both elements' places so many times nearer to the origin."""
+        before, after = (of and of.divide_places(factor) for of in (self.before, self.after))
+        return Change(before, after)
+
     @property
     def kind(self) -> str:
         """Of the element."""

@@ -70,6 +70,7 @@ def take_edits(path: Path, results: Path | None, by: str = "") -> list[str]:
     lost = [change for change in changes if suffix == _JSON and entries.is_lost_room(change)]
     changes = [change for change in changes if change not in lost]
     plan = base.read_edited_plan(session.results)
+    changes = [change.divide_places(plan.factor) for change in changes]
     now = datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     stamp = {"when": now} | ({"by": texts.check_text("--by", by)} if by else {})
     there = corrections_file.find_beside(session.find_place())

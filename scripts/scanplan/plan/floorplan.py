@@ -13,6 +13,7 @@ from scanplan.geometry import overlays
 from scanplan.geometry.arcs import trace_arc
 from scanplan.plan.curves.bent_footprints import WallShapes
 from scanplan.plan.plan_wall import Nearly
+from scanplan.plan.survey_scale import SurveyScale
 from scanplan.plan.tolerances import END_M
 from scanplan.plan.wall_ground import UNSEEN
 from scanplan.rays import free_space, levels
@@ -126,7 +127,10 @@ class FloorPlan:
     corrected_by : str
         Who said so, and the day of the last; empty where that is not known.
     taped_m : sequence of (float, float, float)
-        Of each taped length what is drawn, what was taped, and the standard deviation of that.
+        Of each taped length what is drawn, metres of the map, what was taped, and the standard
+        deviation of both.
+    scale : survey_scale.SurveyScale or None
+        What these, and reference points, say of the survey's lengths.
     doubted : doubts.Doubts
         What speaks against all of the plan.
     nearly : sequence of plan_wall.Nearly
@@ -150,6 +154,7 @@ class FloorPlan:
     unmatched_corrections: Sequence[str] = ()
     corrected_by: str = ""
     taped_m: Sequence[Sequence[float]] = ()
+    scale: SurveyScale | None = None
     doubted: Doubts = NO_DOUBT
     nearly: Sequence[Nearly] = ()
 

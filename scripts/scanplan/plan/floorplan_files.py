@@ -9,6 +9,7 @@ import numpy as np
 
 from scanplan.plan.floorplan import NUMBERS, FloorPlan, GeoReference, make_floorplan
 from scanplan.plan.plan_wall import Nearly
+from scanplan.plan.survey_scale import SurveyScale
 from scanplan.store import schemas, tables
 from scanplan.store.doubts import NO_DOUBT, Doubts, read_doubts
 from scanplan.types import Columns, FilePath
@@ -81,6 +82,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         unmatched_corrections=json.loads(notes.get("unmatched_corrections", "[]")),
         corrected_by=notes.get("corrected_by", ""),
         taped_m=json.loads(notes.get("lengths", "[]")),
+        scale=read_scale(notes),
         doubted=doubted,
         nearly=[
             Nearly(of["kind"], np.array(of["ends_m"]), of["p"])
@@ -96,6 +98,11 @@ def join_rated(plan: FloorPlan, rated: Columns) -> FloorPlan:
         table: _join_confidence(table, getattr(plan, table), rated, _UNSEEN) for table in NUMBERS
     }
     return replace(plan, **parts)
+
+
+def read_scale(notes: Mapping[str, str]) -> SurveyScale | None:
+    """Return what the notes of `schemas.FREE` say of a survey's scale; None where nothing."""
+    return SurveyScale(**json.loads(notes["scale"])) if "scale" in notes else None
 
 
 def format_nearly(nearly: Sequence[Nearly]) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +42,7 @@ _KEYS = {
     ("furniture", "change"): (("at",), ("kind", "outline")),
     ("furniture", "remove"): (("at",), ()),
     ("length", "add"): (("line", "length_m"), ("sigma_m",)),
-    ("reference_point", "add"): (("at", "world", "crs"), ()),
+    ("reference_point", "add"): (("at", "world", "crs"), ("sigma_m",)),
     ("check_point", "add"): (("at", "world", "crs"), ()),
 }
 """What may be done to an element: the keys that such an entry has, and those that it may have; of a
@@ -67,6 +67,8 @@ _KINDS = {
 """What a person may call an opening, what is drawn as a wall, and what stands about."""
 _PLACES = ("at", "line", "swing", "with", "world", "outline")
 """Keys of places, in metres."""
+_SIZES = ("thickness_m", "height_m", "width_m", "sill_m", "lintel_m")
+"""What a tape says of an element."""
 _DIGITS = 12
 """Of a digest of recordings: no two surveys that a person has are of the same."""
 _SURVEY = "survey"
@@ -108,8 +110,10 @@ class Correction:
         In which these are, such as EPSG:25832.
     outline_m : tuple of (float, float) or None
         Corners of what stands about.
-    length_m, sigma_m : float or None
-        Taped between the ends of `line_m`, and its standard deviation.
+    length_m : float or None
+        Taped between the ends of `line_m`.
+    sigma_m : float or None
+        Standard deviation of what was taped, or of a reference point's place, each coordinate.
     when, by : str
         The moment at which it was said, and who said it; empty where not known.
     """
@@ -137,6 +141,11 @@ class Correction:
     sigma_m: float | None = None
     when: str = ""
     by: str = ""
+
+    def divide_sizes(self, factor: float) -> Correction:
+        """Return it with its sizes, all but what was taped, so many times smaller."""
+        sizes_m = {name: getattr(self, name) for name in _SIZES}
+        return replace(self, **{k: m and m / factor for k, m in sizes_m.items()})
 
 
 def name_survey(name: str, made_of: str) -> str:

@@ -50,7 +50,7 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         ("found", found),
         ("doubtful", "; ".join(doubts) or "nothing that the plan marks"),
         *([("placed", wording.state_reference(reference))] if reference else []),
-        *([("taped", wording.state_lengths(plan))] if plan.taped_m else []),
+        *([] if plan.scale is None else [("lengths", wording.state_lengths(plan))]),
         *([("noted", "; ".join(notes))] if notes else []),
         ("made of", used),
         ("tested", wording.prediction_sentence(survey.prediction)),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.plan import floorplan
-from scanplan.plan.taped_lengths import fit_scale
+from scanplan.plan.survey_scale import state_scale
 from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
@@ -64,12 +64,16 @@ def list_contradictions(plan: floorplan.FloorPlan) -> list[str]:
 
 
 def state_lengths(plan: floorplan.FloorPlan) -> str:
-    """Return how far what was taped is from what is drawn, and what scale follows of all."""
-    off = ", ".join(f"{1000 * (drawn - taped):+.0f}" for drawn, taped, _ in plan.taped_m)
-    counted = floorplan.say_count(len(plan.taped_m), "taped length")
-    scale, sigma = fit_scale(plan.taped_m)
-    by_tape = f"{100 * (scale - 1):+.2f} % ± {100 * sigma:.2f} %"
-    return f"drawn less taped, of {counted}: {off} mm; by tape the plan would be {by_tape} longer"
+    """Return what scale follows of all that was measured by hand, and how far lengths are off."""
+    assert plan.scale is not None
+    told = [state_scale(plan.scale)]
+    factor = plan.scale.applied
+    if factor != 1.0:
+        told.append("sheets, models and tables have them, this page the map's")
+    if plan.taped_m:
+        off = ", ".join(f"{1000 * (factor * m - taped):+.0f}" for m, taped, _ in plan.taped_m)
+        told.append(f"drawn less taped: {off} mm")
+    return "; ".join(told)
 
 
 def state_reference(reference: floorplan.GeoReference) -> str:
@@ -104,7 +108,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
     counted = ", ".join(floorplan.say_count(len(of), kind) for kind, of in by_kind.items())
     reference = plan.georeference
     placed = [] if reference is None else [("on Earth", state_reference(reference))]
-    placed += [("taped", state_lengths(plan))] if plan.taped_m else []
+    placed += [] if plan.scale is None else [("lengths", state_lengths(plan))]
     return [
         ("recorded", recorded),
         ("duration", f"{(t_s[-1] - t_s[0]) / 60:.1f} min"),

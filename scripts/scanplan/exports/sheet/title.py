@@ -22,6 +22,7 @@ from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
+from scanplan.plan.survey_scale import state_scale
 from scanplan.recordings.clocks import state_date
 from scanplan.types import Columns, FloatArray
 from scanplan.validation.doubts import list_doubts
@@ -141,7 +142,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Frame", f"{facts.frame or 'map'}, {turn}; {north}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
-        *([[("Corrected on site by", plan.corrected_by, 3)]] if plan.corrected_by else []),
+        *([[("Corrected on site by", by, 3)]] if (by := _state_hands(plan)) else []),
         [("Verdict", _state_verdict(plan, page.locale), 3)],
     ]
     yield from draw_block(page, rows)
@@ -169,6 +170,13 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
             text = clean_text(value if head in _NAMES else page.locale.say(value))
             yield from _draw_value(head, text, ends, (top + bottom) / 2)
             x += width
+
+
+def _state_hands(plan: FloorPlan) -> str:
+    """Return who corrected a plan, and what lengths are corrected by; empty without either."""
+    is_scaled = plan.scale is not None and not plan.scale.fault
+    scaled = state_scale(plan.scale) if is_scaled and plan.scale else ""
+    return "; ".join(filter(None, [plan.corrected_by, scaled]))
 
 
 def _state_verdict(plan: FloorPlan, locale: Locale) -> str:

@@ -26,8 +26,6 @@ SAID = {
 """What column `corrected` says of an element, with who said it, and on which day."""
 _TAPE_M = 0.005
 """ASSUME of a taped length without a standard deviation: what a tape sags, and its ends are off."""
-_OFF = 3.0
-"""Standard deviations by which a taped length is off that is told."""
 
 _ON_LINE_M = 0.01  # what rounding leaves between a line and the passage that it became
 _DAY = 10  # characters of a moment: its year, month and day
@@ -47,7 +45,7 @@ class Outcome:
     told : list of str
         What else follows from one.
     lengths_m : list of (float, float, float)
-        Of each taped length what is drawn, what was taped, and the standard deviation of that.
+        Of each taped length what is drawn, what was taped, and the standard deviation of both.
     """
 
     n_applied: int = 0
@@ -94,7 +92,10 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
     ]
     _apply_found(rows, of_rooms, outcome)
     _apply_found(rows, [c for c in said if c.action == SETTLE], outcome)
-    _check_lengths(rows, [c for c in corrections if c.element == LENGTH], outcome)
+    for correction in corrections:
+        if correction.element == LENGTH:
+            outcome.lengths_m.append(_measure_length(rows, correction))
+            outcome.n_applied += 1
     if not rows.faces:
         raise StageError(f"{corrections[0].entry}: with these no wall is left; remove fewer")
     return outcome
@@ -185,18 +186,11 @@ def _change_thing(rows: PlanRows, thing: Row, correction: Correction) -> None:
         thing |= {"kind": correction.kind, "named": ""}
 
 
-def _check_lengths(rows: PlanRows, taped: Sequence[Correction], outcome: Outcome) -> None:
-    """Hold the plan against what was taped; tell what is off, and what scale follows of all."""
-    for correction in taped:
-        taped_m, sigma_m = correction.length_m or 0.0, correction.sigma_m or _TAPE_M
-        line_m = np.array(correction.line_m)
-        drawn_m, off = things.tell_length(rows, line_m, taped_m, sigma_m)
-        outcome.lengths_m.append((drawn_m, taped_m, sigma_m))
-        outcome.n_applied += 1
-        if abs(off) > _OFF:
-            by = f"{drawn_m:.3f} m are drawn where {taped_m:.3f} m were taped"
-            remedy = "tape it again, or move the wall that is wrong"
-            outcome.told.append(f"{correction.entry}: {by}, {abs(off):.1f} sigma apart; {remedy}")
+def _measure_length(rows: PlanRows, correction: Correction) -> tuple[float, float, float]:
+    """Return what is drawn where something was taped, what was taped, and the sigma of both."""
+    drawn_m, drawn_sigma_m = things.measure_length(rows, np.array(correction.line_m))
+    sigma_m = float(np.hypot(correction.sigma_m or _TAPE_M, drawn_sigma_m))
+    return drawn_m, correction.length_m or 0.0, sigma_m
 
 
 def _draw_outline(

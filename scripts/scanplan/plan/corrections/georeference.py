@@ -6,16 +6,25 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.plan.floorplan import GeoReference
+from scanplan.plan.survey_scale import PlacedPoints
 from scanplan.project.corrections_file import Correction
-from scanplan.types import FloatArray
+
+
+def read_points(points: Sequence[Correction]) -> PlacedPoints:
+    """Return what corrections say of points whose places are known inside and outside."""
+    return PlacedPoints.of(
+        [point.at_m for point in points],
+        [point.world_m or point.at_m for point in points],
+        [point.sigma_m for point in points],
+    )
 
 
 def fit_reference(
-    points: Sequence[Correction], checks: Sequence[Correction] = ()
+    points: Sequence[Correction], checks: Sequence[Correction] = (), scale: float = 1.0
 ) -> GeoReference | None:
     """Return the rigid motion that lays the map frame onto reference points; None without any.
 
-    Rotation and shift by least squares, no scale: a LiDAR's metres are held to be metres.
+    Rotation and shift by least squares, each point by its weight.
 
     Parameters
     ----------
@@ -23,19 +32,23 @@ def fit_reference(
         None, or at least two.
     checks : sequence of corrections_file.Correction
         Points that are not used for it, and only held against it.
+    scale : float
+        By which the map is multiplied before, see `survey_scale`.
     """
     if not points:
         return None
-    map_m, world_m = _read_places(points)
-    around_m = (map_m - map_m.mean(axis=0)) @ np.array([1, 1j])
-    world_around_m = (world_m - world_m.mean(axis=0)) @ np.array([1, 1j])
-    rotation_rad = float(np.angle(np.sum(np.conj(around_m) * world_around_m)))
+    placed = read_points(points)
+    rotation_rad = float(np.angle(placed.fit_similarity()))
     cos, sin = np.cos(rotation_rad), np.sin(rotation_rad)
-    turn = np.array([[cos, -sin], [sin, cos]])
-    origin_m = world_m.mean(axis=0) - turn @ map_m.mean(axis=0)
+    turn = scale * np.array([[cos, -sin], [sin, cos]])
+    weights = placed.sigma_m**-2
+    inside_m, outside_m = (
+        np.average(of_m, axis=0, weights=weights) for of_m in (placed.inside_m, placed.outside_m)
+    )
+    origin_m = outside_m - turn @ inside_m
     control_off_m, check_off_m = (
-        np.linalg.norm(outside_m - (inside_m @ turn.T + origin_m), axis=1)
-        for inside_m, outside_m in ((map_m, world_m), _read_places(checks))
+        np.linalg.norm(of.outside_m - (of.inside_m @ turn.T + origin_m), axis=1)
+        for of in (placed, read_points(checks))
     )
     residual_m = float(np.sqrt(np.mean(control_off_m**2)))
     east_m, north_m = origin_m.tolist()
@@ -48,12 +61,6 @@ def fit_reference(
         control_off_m.tolist(),
         check_off_m.tolist(),
     )
-
-
-def _read_places(points: Sequence[Correction]) -> tuple[FloatArray, FloatArray]:
-    """Return where points lie in the map and outside, (n, 2) each."""
-    inside_m = np.array([point.at_m for point in points], float).reshape(-1, 2)
-    return inside_m, np.array([point.world_m for point in points], float).reshape(-1, 2)
 
 
 def format_reference(reference: GeoReference) -> str:

@@ -61,29 +61,25 @@ def leave_doubt(row: Row, said: str) -> None:
     row |= {"verify": False} if "verify" in row else {}
 
 
-def tell_length(
-    rows: PlanRows, line_m: FloatArray, taped_m: float, sigma_m: float
-) -> tuple[float, float]:
-    """Return what the plan has between two surfaces, and how far that is from what was taped.
+def measure_length(rows: PlanRows, line_m: FloatArray) -> tuple[float, float]:
+    """Return what the plan has between two surfaces, and how sure that is.
 
     Parameters
     ----------
     line_m : (2, 2) float
         From one surface to another, each end within `added.REACH_M` of it.
-    taped_m, sigma_m : float, > 0
-        Metres, and their standard deviation.
 
     Returns
     -------
     drawn_m : float
         Along the line, from face to face, or to its end where no face is near.
-    off : float
-        Drawn less taped, in standard deviations of both.
+    sigma_m : float
+        Of both faces' places.
     """
     along = (line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0]))
     faces = rows.faces
     ends_m = [float(end @ along) for end in line_m]
-    variance_m2 = sigma_m**2
+    variance_m2 = 0.0
     for end, place_m in enumerate(line_m):
         side = -1.0 if end else 1.0
         # a tape is held against a surface that looks along it
@@ -96,8 +92,7 @@ def tell_length(
         ends_m[end] += float(ahead_m)
         wall = rows.wall_of(face)
         variance_m2 += 0.0 if wall is None else float(np.nan_to_num(wall["sigma_offset_m"])) ** 2
-    drawn_m = ends_m[1] - ends_m[0]
-    return drawn_m, (drawn_m - taped_m) / float(np.sqrt(variance_m2))
+    return ends_m[1] - ends_m[0], float(np.sqrt(variance_m2))
 
 
 _FACING = 0.9  # cosine: a tape is held square to a surface, within 25 degrees
