@@ -202,7 +202,7 @@ STATES = {
     "a line that is drawn": "document.querySelector('#draw [data-kind=wall]').click()",
     "ends that are moved": "[...(elements.showElement('wall 5'), document.querySelectorAll("
     "'#card button'))].find(b => b.textContent === 'Move or resize').click()",
-    "the plan in space": "solid.show()",
+    "the plan in space": "edits.change('wall 2', {action: 'remove'}), solid.show()",
 }
 
 
@@ -286,6 +286,58 @@ def test_in_space_the_same_element_is_chosen_as_in_the_plan(page):
     click(page, middle_of(page, "#space"))
     chosen = page.run("document.querySelector('.picked').dataset.element")
     assert chosen == "wall 3" and text_of(page, "#card h2") == "Wall 3"
+
+
+def bounds_of(page, element):
+    """Of the body that a change is drawn by in space: least and greatest place in the map, each."""
+    xyz = np.reshape(
+        page.run(
+            f"(s => [...s.changed.get('{element}')].map((m, i) => m + s.middle[i % 3]))"
+            "(solid.scene())"
+        ),
+        (-1, 3),
+    )
+    return [*xyz.min(axis=0), *xyz.max(axis=0)]
+
+
+def test_changes_are_shown_in_space_and_marked_by_more_than_colour(page):
+    needs_webgl(page)
+    page.run("edits.change('wall 3', {action: 'remove'}), edits.change('wall 5', {height_m: 1.2})")
+    page.run("edits.add({element: 'wall', action: 'add', line: [[1, 2], [3, 2]]})")
+    page.run("solid.show()")
+    signs = "[...document.querySelectorAll('#space-marks span')].map(s => s.textContent)"
+    assert page.run(signs) == ["✗", "✎", "+"]
+    # a wall of no known thickness is drawn 0.1 m thick, as high as the storey
+    assert bounds_of(page, "entry 2") == pytest.approx([1, 1.95, 0, 3, 2.05, 2.5], abs=1e-3)
+    assert bounds_of(page, "wall 5")[5] == pytest.approx(1.2, abs=1e-3)
+    drawn = "solid.scene().edits.children.map(m => [m.userData.names[0], m.material.wireframe])"
+    wires = [name for name, is_wire in page.run(drawn) if is_wire]
+    assert wires == ["wall 3", "wall 5"]
+    # what is taken back is as it was
+    whole = "solid.scene().bodies.children.map(m => [...m.geometry.getAttribute('position').array])"
+    changed = page.run(whole)
+    for _ in range(3):
+        press(page, "Undo", "#corrections")
+    assert page.run(signs) == [] and page.run("solid.scene().edits.children.length") == 0
+    bare = page.run(whole)
+    assert bare != changed
+    press(page, "3-D")
+    press(page, "3-D")
+    assert page.run(whole) == bare
+
+
+def test_a_change_is_the_same_in_space_and_on_the_plan(page):
+    needs_webgl(page)
+    page.run("edits.add({element: 'wall', action: 'add', line: [[1, 2], [3, 2]]})")
+    page.run("solid.show()")
+    page.run("elements.showEntry(0, {x: 2, y: -2})")
+    page.run("elements.closeCard()")
+    # what was chosen is looked at: it is in the middle
+    click(page, middle_of(page, "#space"))
+    assert text_of(page, "#card h2") == "New wall" and page.run("solid.scene().picked.visible")
+    assert page.run("document.querySelector('#edits .picked').dataset.entry") == "0"
+    press(page, "Take it back", "#card")
+    assert entries(page) == [] and not page.run("solid.scene().picked.visible")
 
 
 def test_a_section_cuts_at_a_height_and_what_is_above_cannot_be_chosen(page):

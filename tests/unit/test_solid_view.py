@@ -169,6 +169,8 @@ def test_the_library_is_the_one_that_its_table_states(project_root):
     assert f"three.js {release}".encode() in content[:100]
     assert b"Permission is hereby granted, free of charge" in content[:500]
     # all that the view uses is in it
-    used = re.findall(r"THREE\.(\w+)", (project_root / "workflow/report/page/solid.js").read_text())
+    scripts = ("workflow/report/page/solid.js", "workflow/report/page/solid_edits.js")
+    text = "".join((project_root / script).read_text() for script in scripts)
+    used = re.findall(r"THREE\.(\w+)", text)
     named = (project_root / "workflow/report/three/entry.js").read_text()
     assert set(used) - set(re.findall(r"\w+", named)) == set()

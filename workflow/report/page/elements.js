@@ -41,8 +41,8 @@ const elements = (() => {
   });
 
   function pick(element) {
-    for (const part of document.querySelectorAll("[data-element]")) {
-      part.classList.toggle("picked", part.dataset.element === element);
+    for (const part of document.querySelectorAll("[data-element], [data-entry]")) {
+      part.classList.toggle("picked", (part.dataset.element ?? `entry ${part.dataset.entry}`) === element);
     }
     dispatchEvent(new CustomEvent("picked", { detail: element }));
   }
@@ -69,6 +69,7 @@ const elements = (() => {
   }
   function showEntry(number, place) {
     const entry = edits.entries()[number];
+    pick(`entry ${number}`);
     const acts = make("div", "", { class: "acts" });
     acts.append(button("Take it back", () => { edits.takeBack(entry); closeCard(); }));
     openCard(place, make("h2", choices.describe(entry)), acts);
@@ -133,5 +134,5 @@ const elements = (() => {
   addEventListener("click", (event) => {
     for (const open of document.querySelectorAll("#bar details[open]")) open.open = open.contains(event.target);
   });
-  return { showElement, closeCard, pick };
+  return { showElement, showEntry, closeCard, pick };
 })();

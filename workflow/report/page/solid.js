@@ -80,7 +80,7 @@ const solid = (() => {
     scene.points.geometry.dispose();
     scene.points.geometry = cloud;
     const number = (m) => m.toLocaleString("en");
-    note.textContent = `${data.heights} ${number(n)} of ${number(nAll)} points. Orange is to be verified. Changes are shown here once the plan is made anew.`;
+    note.textContent = `${data.heights} ${number(n)} of ${number(nAll)} points. Orange is to be verified. Changes: blue with + or ✎, and red wire with ✗ is to go; walls are cut and joined once the plan is made anew.`;
     draw();
   }
   async function readPoints() {
@@ -115,7 +115,7 @@ const solid = (() => {
 
   async function make() {
     await readLibrary();
-    const [, , width, depth] = plan.getAttribute("viewBox").split(" ").map(Number);
+    const [width, depth] = [0, 1].map((axis) => data.high_m[axis] - data.low_m[axis]);
     const middle = [data.low_m[0] + width / 2, data.low_m[1] + depth / 2, 0];
     scene = { middle, extent: [width, depth], size: Math.hypot(width, depth), corners: new Map(), cut: null };
     scene.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
@@ -132,6 +132,7 @@ const solid = (() => {
     light.position.set(-0.5, -1, 1.6);
     scene.whole.add(new THREE.AmbientLight("#ffffff", 1.5), light, scene.bodies, scene.points, scene.picked);
     await makeBodies();
+    solidEdits.begin(scene, data.height_m);
     lookAtAll();
     canvas.addEventListener("webglcontextlost", () => refuse("The 3-D view has stopped: the plan alone is here."));
   }
@@ -143,7 +144,9 @@ const solid = (() => {
     isDue = true;
     requestAnimationFrame(() => {
       isDue = false;
-      if (isOn) scene.renderer.render(scene.whole, scene.camera);
+      if (!isOn) return;
+      scene.renderer.render(scene.whole, scene.camera);
+      solidEdits.place();
     });
   }
   function fit() {
@@ -244,7 +247,7 @@ const solid = (() => {
     const at = new THREE.Vector2((2 * (event.clientX - frame.x)) / frame.width - 1, 1 - (2 * (event.clientY - frame.y)) / frame.height);
     const ray = new THREE.Raycaster();
     ray.setFromCamera(at, scene.camera);
-    const hit = ray.intersectObjects(scene.bodies.children).find(({ point }) => isLeft(point));
+    const hit = ray.intersectObjects([...scene.edits.children, ...scene.bodies.children]).find(({ point }) => isLeft(point));
     return hit?.object.userData.names[hit.faceIndex];
   }
   let down = null;
@@ -254,14 +257,16 @@ const solid = (() => {
     if (down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4) return;
     const element = elementAt(event);
     isOwn = true;
-    if (element) elements.showElement(element, metres(event));
+    const [kind, number] = (element ?? "").split(" ");
+    if (kind === "entry") elements.showEntry(Number(number), metres(event));
+    else if (element) elements.showElement(element, metres(event));
     else elements.closeCard();
     isOwn = false;
   });
   function pick(element) {
     if (!scene) return;
     // a face is one side of a wall, and no body of its own
-    const corners = scene.corners.get(element);
+    const corners = scene.changed.get(element) ?? scene.corners.get(element);
     scene.picked.visible = corners !== undefined;
     if (!corners) return draw();
     scene.picked.geometry.dispose();
@@ -273,6 +278,10 @@ const solid = (() => {
     const by = scene.picked.geometry.boundingSphere.center.clone().sub(controls.target);
     look(camera.position.clone().add(by).toArray(), controls.target.clone().add(by).toArray());
   }
+  edits.onChange(() => {
+    solidEdits.redraw();
+    if (isOn) draw();
+  });
   let chosen = null;
   addEventListener("picked", (event) => {
     chosen = event.detail;
@@ -308,7 +317,7 @@ const solid = (() => {
   }
   function toggle() {
     view.classList.toggle("space", isOn);
-    for (const part of [canvas, bar, note]) part.hidden = !isOn;
+    for (const part of [canvas, bar, note, byId("space-marks")]) part.hidden = !isOn;
     byId("growing").hidden = isOn;
     pressed.setAttribute("aria-pressed", String(isOn));
   }
