@@ -83,8 +83,9 @@ is the true one.
 scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
 drives are named 200_2d_1 to 600_3d_2, and intel_odometry.
 
-`edits` scores the plan of intel or lab_ipa before and after what a person who knows the floor says
-of it in ten minutes, in the words of the report's page.
+`walk` mends a plan on its page in a browser, as somebody would who knows the floor and has nothing
+else, in ten minutes by the keystroke-level model; its errors by the truth before and after, and
+what was done. Results are those of a demo, or of a floor with a truth: drawn by hand or of a map.
 
 `overlays` unites, cuts and parts 100,000 arrangements of areas that rounding makes hard, or as many
 as are said, and fails where an overlay raises or areas do not add up.
@@ -222,11 +223,11 @@ def bench_next_visit(folder: str, *names: str) -> None:
     visit_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), recordings, surveys)
 
 
-def bench_edits(results: str, truth: str, folder: str) -> None:
-    """A real floor's plan before and after ten minutes with the editor."""
-    import edit_bench
+def bench_walk(results: str, truth: str | None = None) -> None:
+    """A plan before and after ten minutes with its page and nothing else."""
+    import walk_bench
 
-    edit_bench.measure_edits(results, truth, folder)
+    walk_bench.bench(results, truth)
 
 
 def bench_design(folder: str) -> None:
@@ -329,7 +330,7 @@ APART: dict[str, Callable[..., None]] = {
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,
     "overlays": bench_overlays,
-    "edits": bench_edits,
+    "walk": bench_walk,
     "growth": bench_growth,
     "pipeline": bench_pipeline,
     "changes": bench_changes,

@@ -206,3 +206,11 @@ def test_an_opening_drawn_a_little_beyond_its_wall_is_added(plan):
     line = [[4.05, 2.2], [4.05, 3.4]]
     found = corrected(plan, {"element": "opening", "action": "add", "line": line, "kind": "door"})
     assert found.openings["width_m"][-1] == pytest.approx(1.2)
+
+
+def test_an_opening_is_in_the_wall_that_it_fits(plan):
+    """A pier of 0.3 m stands nearer to its middle than the wall that it is drawn along."""
+    pier = {"element": "wall", "action": "add", "line": [[4.2, 2.3], [4.2, 2.6]]}
+    door = {"element": "opening", "action": "add", "line": [[4.2, 1.7], [4.2, 2.9]], "kind": "door"}
+    found = corrected(plan, pier, door)
+    assert found.openings["wall"][-1] == 5 and found.openings["x0_m"][-1] == pytest.approx(4.05)

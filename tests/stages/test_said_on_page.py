@@ -82,6 +82,14 @@ def test_two_things_are_two_entries(page):
     assert len(entries(page)) == 1
 
 
+def test_a_wall_drawn_twice_is_one_entry_whichever_way(page, tmp_path):
+    for line in ([[1, 2], [3, 2]], [[3, 2], [1, 2]]):
+        page.run(f"edits.add({{element: 'wall', action: 'add', line: {line}}})")
+    (entry,) = entries(page)
+    assert entry["line"] == [[3, 2], [1, 2]]
+    assert len(carried_out(page, tmp_path).walls["wall"]) == 7
+
+
 def test_a_length_is_taped_between_two_walls(page, tmp_path):
     press(page, "Draw")
     press(page, "Taped length", "#draw")

@@ -31,6 +31,16 @@ def written(folder, text, name="corrections.yaml"):
     return path
 
 
+def test_a_room_may_be_one_with_several(tmp_path):
+    path = tmp_path / "corrections.yaml"
+    merge = "- {element: room, action: merge, at: [1, 1], with: [5, %d]}\n"
+    path.write_text("corrections:\n" + merge % 1 + merge % 2)
+    assert [c.with_m for c in read_corrections(path)] == [(5.0, 1.0), (5.0, 2.0)]
+    path.write_text("corrections:\n" + merge % 1 + merge % 1)
+    with pytest.raises(StageError, match="entry 2: entry 1 is of the same place"):
+        read_corrections(path)
+
+
 def test_entries_are_read_as_they_stand(tmp_path):
     room, wall, opening, new_wall, door, point, _ = read_corrections(written(tmp_path, GOOD))
     assert (room.action, room.at_m, room.name) == ("change", (1.0, 2.0), "Foyer & bar")

@@ -280,7 +280,7 @@ def _check_places(corrections: Iterable[Correction]) -> None:
     for correction in corrections:
         is_of_itself = correction.action in (*OUTLINES, SETTLE)
         group = correction.action if is_of_itself else ""
-        place = (correction.element, group, correction.at_m)
+        place = (correction.element, group, correction.at_m, correction.with_m)
         other = first.setdefault(place, correction)
         if other is not correction:
             fault = f"{other.entry.rpartition(': ')[2]} is of the same place"

@@ -21,7 +21,8 @@ const edits = (() => {
   const said = remember((entry) => JSON.stringify(Object.entries(entry).filter(([name]) => name !== "when" && name !== "by").sort()));
   const has = (list, entry) => list.some((other) => said(other) === said(entry));
   const isOutline = (entry) => ["split", "merge", "settle"].includes(entry.action);
-  const identify = (entry) => JSON.stringify([entry.element, isOutline(entry) && entry.action, entry.at ?? entry.line ?? entry.outline]);
+  // two of the same place are refused when they are saved, whichever way a line was drawn
+  const identify = (entry) => JSON.stringify([entry.element, isOutline(entry) && entry.action, entry.at ?? (entry.line ? middle(entry.line) : entry.outline), entry.with]);
 
   function replace(list, { before, after }) {
     const at = before ? list.findIndex((entry) => said(entry) === said(before)) : -1;
@@ -167,7 +168,7 @@ const edits = (() => {
     isNew: (entry) => !has(given, entry),
     fresh: () => current.filter((entry) => !has(given, entry)),
     gone: () => given.filter((entry) => !has(current, entry)),
-    add: (entry) => step(null, entry),
+    add: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
     takeBack: (entry) => step(entry, null),
     bring: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
     adopt,

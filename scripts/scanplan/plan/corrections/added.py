@@ -25,6 +25,16 @@ def find_nearest(rows: Sequence[Row], place: shapely.Point) -> Row | None:
     return rows[nearest] if far_m and far_m[nearest] <= REACH_M else None
 
 
+def find_host(walls: Sequence[Row], line_m: FloatArray) -> Row | None:
+    """Return the nearest wall that a line (2, 2) may be an opening of, else the nearest of all.
+
+    None where none is within reach.
+    """
+    middle = shapely.Point(line_m.mean(axis=0))
+    fitting = [wall for wall in walls if explain_misfit(wall, line_m) is None]
+    return find_nearest(fitting, middle) or find_nearest(walls, middle)
+
+
 def add_wall(rows: PlanRows, line_m: FloatArray, thickness_m: float | None, said: str) -> None:
     """Add a wall along a line (2, 2), with a face on each side, or of no known thickness with one.
 

@@ -261,7 +261,7 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
         changed.set_height(rows, rows.walls[-1], correction.height_m)
         outcome.n_applied += 1
         return
-    wall = added.find_nearest(rows.walls, shapely.Point(correction.at_m))
+    wall = added.find_host(rows.walls, line_m)
     if wall is None:
         where = f"no wall lies within {added.REACH_M} m of the middle of its line"
         outcome.unmatched.append(f"{correction.entry}: {where}: not applied")
