@@ -1,9 +1,9 @@
 """Ten minutes with the page and nothing else: a plan before and after somebody who knows the floor.
 
-A browser opens the report that `scanplan open` serves. All is done there by mouse and keys: the walk
-through the doubts, answered by the truth; cards of what is wrong and nobody asked for; lines that
-part rooms, and rooms that are one; openings and walls that are missing, the longest first. Then it
-is saved, and the stages run. What it takes a person is by the keystroke-level model.
+A browser opens the report that `scanplan open` serves. All is done there by mouse and keys: the
+walk through the doubts, answered by the truth; cards of what is wrong and nobody asked for; lines
+that part rooms, and rooms that are one; openings and walls that are missing, the longest first.
+Then it is saved, and the stages run. A person's time is by the keystroke-level model.
 """
 
 import json
@@ -300,6 +300,8 @@ def save(hand):
     made = page.run("planView.data.made")
     begin = time.monotonic()
     hand.think()
+    # what was told of an earlier try is none of this one
+    page.run("document.getElementById('told').textContent = ''")
     hand.press("Save and make the plan anew", "#corrections")
     while True:
         try:
