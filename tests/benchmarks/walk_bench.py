@@ -122,7 +122,8 @@ class Hand:
 
     def choose(self, selector, value):
         """Take an entry of a list: it is opened, and the entry clicked."""
-        self._point(), self._point()
+        self._point()
+        self._point()
         self.page.run(
             f"(s => {{ s.value = {json.dumps(value)}; s.dispatchEvent(new Event('change')); }})"
             f"(document.querySelector({json.dumps(selector)}))"
@@ -270,7 +271,8 @@ def part_and_join(hand, said):
         hand.think()
         if room and open_card(hand, room, page.run(f"edits.placeOf('{room}')")):
             hand.press("Two rooms: draw the line", "#card")
-            hand.tap(*start), hand.tap(*end)
+            hand.tap(*start)
+            hand.tap(*end)
     for at, other in said.get("one", []):
         rooms = [page.run(room_at.format(*place)) for place in (at, other)]
         hand.think()
@@ -288,7 +290,8 @@ def draw_missing(hand, known, most_s):
         hand.press("Draw")
         hand.press("Wall" if table == "stretch" else _DRAWN[kind], "#draw")
         before = hand.page.run("edits.entries().length")
-        hand.tap(*line_m[0]), hand.tap(*line_m[1])
+        hand.tap(*line_m[0])
+        hand.tap(*line_m[1])
         if hand.page.run("edits.entries().length") == before:
             hand.key("Escape")
         hand.press("Fit")
@@ -335,6 +338,7 @@ def served(results):
         env={**os.environ, "PYTHONPATH": str(root / "scripts")},
     )  # fmt: skip
     try:
+        assert process.stdout is not None
         yield process.stdout.readline().split()[-1]
     finally:
         process.terminate()
