@@ -84,7 +84,7 @@ class Hand:
 
     @property
     def seconds(self):
-        return sum(SECONDS[act] for act in self.acts)
+        return time_acts(self.acts)
 
     def think(self):
         self.acts += "M"
@@ -96,18 +96,12 @@ class Hand:
 
     def tap(self, x_m, y_m):
         """Click a place of the plan."""
-        matrix = "document.getElementById('plan').getScreenCTM()"
-        point = f"new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix})"
         self._point()
-        click(self.page, self.page.run(f"(p => [p.x, p.y])({point})"))
+        click(self.page, self._find_on_screen(x_m, y_m))
 
     def come_near(self, line_m):
         """Turn the wheel with Ctrl over a line's middle, as far as both ends stay in sight."""
-        matrix = "document.getElementById('plan').getScreenCTM()"
-        places = [
-            self.page.run(f"(p => [p.x, p.y])(new DOMPoint({x}, {-y}).matrixTransform({matrix}))")
-            for x, y in line_m
-        ]
+        places = [self._find_on_screen(*place) for place in line_m]
         left, top, right, bottom = self.page.run(
             "(r => [r.left, r.top, r.right, r.bottom])"
             "(document.getElementById('view').getBoundingClientRect())"
@@ -115,8 +109,8 @@ class Hand:
         middle = np.mean(places, axis=0)
         ends = middle + _NEARER * (np.array(places) - middle)
         if ((ends > [left, top]) & (ends < [right, bottom])).all():
-            self.acts += "H" * (not self._is_at_mouse) + "PKK"
-            self._is_at_mouse = True
+            self._point()
+            self.acts += "K"
             turn = {"deltaX": 0, "deltaY": -300, "modifiers": 2}
             self.page.mouse("mouseWheel", *middle.tolist(), **turn)
 
@@ -137,6 +131,16 @@ class Hand:
     def _point(self):
         self.acts += "H" * (not self._is_at_mouse) + "PK"
         self._is_at_mouse = True
+
+    def _find_on_screen(self, x_m, y_m):
+        matrix = "document.getElementById('plan').getScreenCTM()"
+        point = f"new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix})"
+        return self.page.run(f"(p => [p.x, p.y])({point})")
+
+
+def time_acts(acts):
+    """Return how many seconds the model gives a person for some acts."""
+    return sum(SECONDS[act] for act in acts)
 
 
 @dataclass
@@ -375,12 +379,8 @@ class Walked:
     acts: str
     machine_s: float
 
-    @property
-    def hand_s(self):
-        return sum(SECONDS[act] for act in self.acts)
 
-
-def walk_floor(results, truth=None, address=None):
+def walk_floor(results, truth=None):
     """Mend the plan of results, uncorrected yet, on their page; the corrections stay.
 
     Parameters
@@ -389,18 +389,13 @@ def walk_floor(results, truth=None, address=None):
         A folder below results/.
     truth : path-like, optional
         See `place_floor`.
-    address : str, optional
-        Of a server of theirs; one is begun if not given.
     """
     if (results / "plan/corrected").exists():
         sys.exit(f"{results}: is corrected already; remove its corrections and run it again")
     placed = place_floor(results, truth)
     before = score_files.score_results(placed)
     known = read_known(placed, before)
-    if address is None:
-        with served(results) as begun:
-            entries, hand, machine_s = _mend(begun, results.name, known)
-    else:
+    with served(results) as address:
         entries, hand, machine_s = _mend(address, results.name, known)
     after = score_corrected(placed)
     return Walked(before.measures, after.measures, entries, hand.acts, machine_s)
@@ -436,8 +431,8 @@ def bench(results, truth=None):
     n_acts = acts["K"]
     print(f"{results.name}: {len(walked.entries)} things said: {dict(counts)}")
     print(
-        f"  {n_acts} presses of keys and buttons; {walked.hand_s:.0f} s by the keystroke-level"
-        f" model ({dict(acts)}), {walked.machine_s:.0f} s of the machine"
+        f"  {n_acts} presses of keys and buttons; {time_acts(walked.acts):.0f} s by the"
+        f" keystroke-level model ({dict(acts)}), {walked.machine_s:.0f} s of the machine"
     )
     for name in _MEASURES:
         was, is_now = (of.get(name, np.nan) for of in (walked.before, walked.after))
