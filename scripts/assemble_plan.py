@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from scanplan.design import design_prior, design_reading
 from scanplan.plan import messages, planning
 from scanplan.plan.floorplan import FloorPlan, make_floorplan
 from scanplan.plan.floorplan_files import format_nearly
 from scanplan.plan.model import fronts
+from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.rays import free_space, levels, ray_set
 from scanplan.selection import stopping
 from scanplan.stage import log, witnesses, workers
@@ -106,13 +106,7 @@ def assemble_plan(
         plan = make_plan()
         messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)
         if design is not None:
-            found = {name: getattr(plan, name) for name in planning.TABLES}
-            first = make_floorplan(found, math.nan, math.nan, "the survey")
-            known = design_reading.read_design(design)
-            designed, told = design_prior.lay_design(known, Path(design).name, first, storey)
-            for line in told:
-                log.log_warning(f"assemble_plan: {line}")
-            plan = make_plan(designed=designed)
+            plan = make_plan(designed=_lay_design(design, storey, plan))
     heights_m, sparse = wait_for_rays()
     drawn = FloorPlan(
         name="",
@@ -140,6 +134,20 @@ def assemble_plan(
         f"assemble_plan: {messages.summarise_plan(plan)}; {is_used.sum():,} segments of"
         f" {count} scans; {reason}"
     )
+
+
+def _lay_design(design: FilePath, storey: str | int | None, plan: planning.Plan) -> DesignedWalls:
+    """Return a design where a plan ties it, and log what is doubtful about that."""
+    # not of a plan without one
+    from scanplan.design import design_prior, design_reading
+
+    found = {name: getattr(plan, name) for name in planning.TABLES}
+    first = make_floorplan(found, math.nan, math.nan, "the survey")
+    known = design_reading.read_design(design)
+    designed, told = design_prior.lay_design(known, Path(design).name, first, storey)
+    for line in told:
+        log.log_warning(f"assemble_plan: {line}")
+    return designed
 
 
 def _read_rays(

@@ -42,7 +42,7 @@ def correct_plan(
     points = [correction for correction in said if correction.element == "reference_point"]
     checks = [correction for correction in said if correction.element == "check_point"]
     scale = survey_scale.fit_scale(outcome.lengths_m, georeference.read_points(points))
-    factor = 1.0 if scale is None else scale.applied
+    factor = survey_scale.find_factor(scale)
     if factor != 1.0:
         # sizes are those of a tape, and the plan is in metres of the map
         changed = rows.rows_of_plan(found, floor_m)

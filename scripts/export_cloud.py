@@ -13,6 +13,7 @@ from scanplan.exports.data.cloud_picture import CloudPicture
 from scanplan.exports.model_origin import find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import GeoReference
+from scanplan.plan.survey_scale import find_factor
 from scanplan.recordings.survey import open_colours
 from scanplan.selection import stopping
 from scanplan.stage import log
@@ -104,8 +105,7 @@ def _colour(
 
 def _read_factor(free: FilePath) -> float:
     """Return by what lengths of the map are corrected."""
-    scale = floorplan_files.read_scale(tables.read_notes(free, schemas.FREE))
-    return 1.0 if scale is None else scale.applied
+    return find_factor(floorplan_files.read_scale(tables.read_notes(free, schemas.FREE)))
 
 
 def _draw(

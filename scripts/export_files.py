@@ -25,6 +25,7 @@ from scanplan.exports.model_origin import ModelOrigin, find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.scaled_plan import scale_floorplan
+from scanplan.plan.survey_scale import find_factor
 from scanplan.project.catalogue_file import read_catalogue
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
@@ -109,7 +110,7 @@ def export_files(
     for file in unwanted:
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
-        factor = 1.0 if drawn.scale is None else drawn.scale.applied
+        factor = find_factor(drawn.scale)
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered, factor)
         layers |= wayfinding.imdf_layers(drawn, rows)
         remedy = "leave gpkg out of plan.export.formats"

@@ -12,6 +12,7 @@ from scanplan.errors import StageError
 from scanplan.plan import planning
 from scanplan.plan.corrections.rows import PlanRows, Row, rows_of_plan
 from scanplan.plan.floorplan_files import read_scale
+from scanplan.plan.survey_scale import find_factor
 from scanplan.store import schemas, tables
 from scanplan.types import FilePath
 
@@ -77,7 +78,7 @@ def read_edited_plan(results: Path) -> EditedPlan:
     ids = tables.read_table(folder / "ids.parquet", schemas.ELEMENT_IDS, allow_empty=True)
     named = zip(ids["kind"].tolist(), ids["global_id"].tolist(), strict=True)
     numbers = dict(zip(named, ids["number"].tolist(), strict=True))
-    return EditedPlan(found, shown, numbers, 1.0 if scale is None else scale.applied)
+    return EditedPlan(found, shown, numbers, find_factor(scale))
 
 
 def _read_rows(folder: Path) -> PlanRows:

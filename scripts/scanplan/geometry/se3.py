@@ -99,15 +99,18 @@ def nearest_rigid(pose: npt.ArrayLike) -> FloatArray:
     return cleaned
 
 
-def turn_between_rad(one: FloatArray, other: FloatArray) -> float:
-    """Return by what angle two 4 x 4 poses are turned from one another, 0 to pi.
+def turn_between_rad(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return by what angle (...,) poses (..., 4, 4) are turned from one another, 0 to pi.
 
-    >>> turn_between_rad(np.eye(4), np.diag([-1.0, -1.0, 1.0, 1.0])) == np.pi
+    NaN of those that are not known.
+
+    >>> float(turn_between_rad(np.eye(4), np.diag([-1.0, -1.0, 1.0, 1.0]))) == np.pi
     True
     """
     # |R - S| in the Frobenius norm is sqrt(8) sin(angle / 2)
-    half_sine = np.linalg.norm(one[:3, :3] - other[:3, :3]) / np.sqrt(8)
-    return 2 * float(np.arcsin(min(half_sine, 1.0)))
+    apart = one[..., :3, :3] - other[..., :3, :3]
+    half_sine = np.linalg.norm(apart, axis=(-2, -1)) / np.sqrt(8)
+    return 2 * np.arcsin(np.minimum(half_sine, 1.0))
 
 
 def pose_yaw_rad(pose: npt.ArrayLike) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.survey_scale import find_factor
 from scanplan.types import Array, Columns
 
 _TABLES = ("faces", "walls", "openings", "unseen", "rooms", "free", "furniture")
@@ -18,7 +19,7 @@ def scale_floorplan(plan: FloorPlan) -> FloorPlan:
 
     The map's origin stays where it is; the plan itself where no scale is applied.
     """
-    factor = 1.0 if plan.scale is None else plan.scale.applied
+    factor = find_factor(plan.scale)
     if factor == 1.0:
         return plan
     tables = {name: scale_columns(getattr(plan, name), factor) for name in _TABLES}

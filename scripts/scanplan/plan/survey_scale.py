@@ -142,6 +142,11 @@ def fit_scale(
     return SurveyScale(factor, sigma, len(lengths_m), n_points)
 
 
+def find_factor(scale: SurveyScale | None) -> float:
+    """Return by which lengths of the map are multiplied: 1 where nothing was measured by hand."""
+    return 1.0 if scale is None else scale.applied
+
+
 def state_scale(scale: SurveyScale) -> str:
     """Return what a survey's lengths are corrected by, or why not, and what that follows from."""
     of = [f"{scale.n_lengths} taped"] if scale.n_lengths else []

@@ -22,7 +22,7 @@ MORE_MET = 0.2
 def choose_pairs(world_from_sensor: FloatArray) -> IntArray:
     """Return rows of poses (n, 4, 4) that the sensor moved and turned after, up to the next one."""
     moved = se3.invert_pose(world_from_sensor[:-1]) @ world_from_sensor[1:]
-    turn_rad = np.array([se3.turn_between_rad(np.eye(4), each) for each in moved])
+    turn_rad = se3.turn_between_rad(np.eye(4), moved)
     motion_m = np.linalg.norm(moved[:, :3, 3], axis=1) + ARM_M * turn_rad
     rows = np.flatnonzero((motion_m > _MOTION_M[0]) & (motion_m < _MOTION_M[1]))
     # by turns most readings differ: half of the pairs have them

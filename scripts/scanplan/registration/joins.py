@@ -112,7 +112,7 @@ def find_map_jumps(
             known[i], by[i] = motion[i], _PACE
             known[i, :2, 3] *= _reach_m(apart_s[i]) / np.hypot(*motion[i, :2, 3])
     off_m = np.linalg.norm((motion - known)[:, :2, 3], axis=1)
-    turn_deg = np.degrees([se3.turn_between_rad(*pair) for pair in zip(known, motion, strict=True)])
+    turn_deg = np.degrees(se3.turn_between_rad(known, motion))
     return [
         MapJump(
             int(loose[i]),

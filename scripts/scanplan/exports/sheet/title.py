@@ -174,8 +174,7 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
 
 def _state_hands(plan: FloorPlan) -> str:
     """Return who corrected a plan, and what lengths are corrected by; empty without either."""
-    is_scaled = plan.scale is not None and not plan.scale.fault
-    scaled = state_scale(plan.scale) if is_scaled and plan.scale else ""
+    scaled = state_scale(plan.scale) if plan.scale and not plan.scale.fault else ""
     return "; ".join(filter(None, [plan.corrected_by, scaled]))
 
 

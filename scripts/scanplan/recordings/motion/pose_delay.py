@@ -68,7 +68,7 @@ def find_delay_s(survey: Survey, poses_at: PosesAt, what: str) -> float:
     pairs = [
         _make_pair(scans[one], scans[other], planar=survey.planar)
         for one, other in first.tolist()
-        if one in scans and other in scans and min(map(_count, (scans[one], scans[other])))
+        if all(n in scans and len(scans[n].xyz_m) for n in (one, other))
     ]
     if len(pairs) < _FEWEST_PAIRS:
         return 0.0
@@ -110,10 +110,13 @@ def _choose_pairs(poses_at: PosesAt, t_ns: IntArray) -> IntArray:
             poses[known], keep_every=len(known) + 1, max_step_m=_APART_M, max_turn_deg=_APART_DEG
         )
     ]
-    moved = [_moved_between(poses_at, t_ns[apart], by_s) for by_s in (-_SHOWN_S, 0.0, _SHOWN_S)]
     if len(apart) < 2:
         return np.empty((0, 2), int)
-    shown_m = np.fmax(*(_turned_apart_m(moved[1], other) for other in (moved[0], moved[2])))
+    earlier, stated, later = (
+        _moved_between(poses_at, t_ns[apart], by_s) for by_s in (-_SHOWN_S, 0.0, _SHOWN_S)
+    )
+    turned_rad = (se3.turn_between_rad(stated, other) for other in (earlier, later))
+    shown_m = scan_pairs.ARM_M * np.fmax(*turned_rad)
     order = np.argsort(-shown_m, kind="stable")[:_MOST_PAIRS]
     order = np.sort(order[shown_m[order] > _SHOWN_M])
     return np.column_stack([apart[order], apart[order + 1]])
@@ -123,17 +126,6 @@ def _moved_between(poses_at: PosesAt, t_ns: IntArray, delay_s: float) -> FloatAr
     """Return by a delay how the sensor moved from each of some times (n,) to the next."""
     poses = poses_at(t_ns + round(delay_s * 1e9))
     return se3.invert_pose(poses[:-1]) @ poses[1:]
-
-
-def _turned_apart_m(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return how far turns (n, 4, 4) move points 3 m away from one another; NaN of unknown."""
-    between = np.swapaxes(one[:, :3, :3], 1, 2) @ other[:, :3, :3]
-    turn_rad = np.arccos(np.clip((np.trace(between, axis1=1, axis2=2) - 1) / 2, -1, 1))
-    return scan_pairs.ARM_M * turn_rad
-
-
-def _count(scan: Scan) -> int:
-    return len(scan.xyz_m)
 
 
 def _make_pair(one: Scan, other: Scan, *, planar: bool) -> _Pair:
