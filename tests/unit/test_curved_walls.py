@@ -191,3 +191,12 @@ def test_the_tables_state_the_circle_of_a_curved_wall_alone():
     assert 0.02 <= sigma_m < 0.03
     ends_m = [[columns[f"{axis}{end}_m"][1] for axis in "xy"] for end in (0, 1)]
     assert np.hypot(*np.transpose(ends_m)) == pytest.approx(radius_m, abs=0.01)
+
+
+def test_walls_of_a_surer_curve_are_bent_once(monkeypatch):
+    rng = np.random.default_rng(1)
+    walls = single_walls(arc_faces(4.0, 0.2, 1.8, 4, rng))
+    once = bend(walls)
+    find_curves = circle_search.find_curves
+    monkeypatch.setattr(circle_search, "find_curves", lambda *a, **k: find_curves(*a, **k) * 2)
+    assert [of.ends.tolist() for of in bend(walls)] == [of.ends.tolist() for of in once]

@@ -62,6 +62,8 @@ def bend_walls(
         is_chord = ring.find_chords(walls) & ~taken
         taken |= is_chord
         chords = list(itertools.compress(walls, is_chord))
+        if not chords:  # surer curves have all walls that it shows a side of
+            continue
         top_m = _usual_top_m(chords, list(itertools.compress(tops_m, is_chord)))
         drawn = ring.add_faces(chords).draw_walls(chords, rays, opening, reading)
         bent += [(wall, top_m) for wall in drawn]
