@@ -46,15 +46,8 @@ def validate_plan(
     drawn = floorplan_files.read_floorplan(plan)
     chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     registered = registered_scans.read_registered_scans(registration)
-    rays = left_out_scans.draw_left_out_rays(
-        tables.ScanStore(scans),
-        registered,
-        chosen_ids,
-        (drawn.storey_m[0], drawn.ceiling_z_m),
-        max_scans=limits.max_scans,
-        max_rays=limits.max_rays,
-        seed=limits.seed,
-    )
+    store = tables.ScanStore(scans)
+    rays = left_out_scans.draw_left_out_rays(store, registered, chosen_ids, drawn, limits)
     n_left_out, n_drawn = len(registered.scan_ids) - len(chosen_ids), len(rays.scan_ids)
     found = prediction.validate_by_rays(drawn, rays, limits)
     absent = prediction.explain_absence(found, len(registered.scan_ids), n_left_out)

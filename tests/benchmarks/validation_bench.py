@@ -60,15 +60,8 @@ def _read_survey(folder: Path, truth: Path, settings: Settings) -> Survey:
     chosen_ids, _ = stopping.read_chosen_scans(folder / f"selection/{method}.parquet", **stop)
     chosen_ids = np.sort(chosen_ids)
     known = registered_scans.read_registered_scans(folder / "registration.parquet")
-    rays = left_out_scans.draw_left_out_rays(
-        tables.ScanStore(folder / "scans.parquet"),
-        known,
-        chosen_ids,
-        (plan.storey_m[0], plan.ceiling_z_m),
-        max_scans=limits.max_scans,
-        max_rays=limits.max_rays,
-        seed=limits.seed,
-    )
+    store = tables.ScanStore(folder / "scans.parquet")
+    rays = left_out_scans.draw_left_out_rays(store, known, chosen_ids, plan, limits)
     rows = np.searchsorted(known.scan_ids, chosen_ids)
     return Survey(plan, rays, limits, visible_truth(truth, known.t_ns, rows, settings))
 

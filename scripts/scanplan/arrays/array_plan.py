@@ -197,11 +197,7 @@ def rate_plan(made: ArrayPlan, placed: Placed) -> FloorPlan:
     """Return a plan with how likely its elements are right, by rays of scans not chosen."""
     limits = prediction.ValidationSettings(**stage_settings.select_validation(placed.settings))
     rays = left_out_scans.draw_left_out_rays(
-        *(placed, placed.known, made.chosen_ids),
-        (made.drawn.storey_m[0], made.drawn.ceiling_z_m),
-        max_scans=limits.max_scans,
-        max_rays=limits.max_rays,
-        seed=limits.seed,
+        placed, placed.known, made.chosen_ids, made.drawn, limits
     )
     found = prediction.validate_by_rays(made.drawn, rays, limits)
     rated = confidence.rate_elements(made.drawn, found.elements, limits.max_sigma_m)

@@ -10,7 +10,8 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import trace_arc, turn_rad
-from scanplan.types import BoolArray, FloatArray
+from scanplan.geometry.cell_runs import find_cell_runs
+from scanplan.types import FloatArray
 
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
 _CHORD_RAD = (math.radians(0.5), math.radians(45))
@@ -87,17 +88,10 @@ def _find_arcs(ring: BaseGeometry) -> Iterator[_Arc]:
     bends = np.where(is_bent, radius_m, np.nan)[order]
     with np.errstate(invalid="ignore"):
         goes_on = np.abs(bends[1:] / bends[:-1] - 1) <= _ALIKE
-    for first, last in _list_runs(goes_on):
+    for first, last in zip(*find_cell_runs(goes_on)[1:], strict=True):
         if last - first >= _LEAST_CORNERS - 3:
             rows = order[np.arange(first - 1, last + 2) % len(order)]
             yield _Arc(corners_m[rows], bool(turn[rows[1]] > 0))
-
-
-def _list_runs(goes_on: BoolArray) -> list[tuple[int, int]]:
-    """Return first and last of what goes on from one to the next."""
-    edges = np.diff(np.concatenate([[False], goes_on, [False]]).astype(int))
-    begins, ends = (np.flatnonzero(sign * edges > 0).tolist() for sign in (1, -1))
-    return list(zip(begins, ends, strict=True))
 
 
 def _pair(inner: _Arc, outer: _Arc) -> CurvedGround | None:

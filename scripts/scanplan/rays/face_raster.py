@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from scanplan.geometry.cell_runs import find_cell_runs
 from scanplan.rays.tolerances import FEW, STRETCH_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -149,8 +150,7 @@ def find_stretches(is_found: BoolArray, first_m: float) -> FloatArray:
     first_m : float
         Where the first column begins.
     """
-    steps = np.diff(np.concatenate([[False], is_found, [False]]).astype(np.int8))
-    columns = np.flatnonzero(steps).reshape(-1, 2)
+    columns = np.column_stack(find_cell_runs(is_found)[1:])
     is_long = np.diff(columns, axis=1)[:, 0] >= round(STRETCH_M / CELL_M)
     return first_m + CELL_M * columns[is_long]
 

@@ -4,42 +4,40 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.store.registered_scans import RegisteredScans, ScanReader
 from scanplan.types import FloatArray, IntArray
+from scanplan.validation.prediction import ValidationSettings
 
 
 def draw_left_out_rays(
     store: ScanReader,
     registered: RegisteredScans,
     chosen_ids: IntArray,
-    storey_z_m: tuple[float, float],
-    *,
-    max_scans: int,
-    max_rays: int,
-    seed: int,
+    plan: FloorPlan,
+    limits: ValidationSettings,
 ) -> RaySet:
-    """Draw rays of registered scans that were not chosen, see `draw_rays`.
+    """Draw rays of registered scans that a plan was not made of, see `draw_rays`.
 
     Parameters
     ----------
     chosen_ids : (k,) int
         The scans that the plan was made of.
-    storey_z_m : (float, float)
-        Heights of floor and ceiling in the map frame, NaN where not known.
-    max_scans, max_rays : int, >= 1
 
     Returns
     -------
     RaySet
-        Of at most `max_scans` scans, which its `scan_ids` names.
+        Of at most `limits.max_scans` scans, which its `scan_ids` names.
     """
+    seed = limits.seed
     left_out_ids = np.setdiff1d(registered.scan_ids, chosen_ids)
-    scan_ids = draw_left_out_scans(left_out_ids, max_scans, seed)
+    scan_ids = draw_left_out_scans(left_out_ids, limits.max_scans, seed)
     rows = np.searchsorted(registered.scan_ids, scan_ids)
     sensors_m = registered.map_from_sensor[rows, :3, 3]
-    return draw_rays(store, scan_ids, sensors_m, storey_z_m, max_rays=max_rays, seed=seed)
+    storey_z_m = (plan.storey_m[0], plan.ceiling_z_m)
+    return draw_rays(store, scan_ids, sensors_m, storey_z_m, max_rays=limits.max_rays, seed=seed)
 
 
 def draw_left_out_scans(left_out_ids: IntArray, max_scans: int, seed: int) -> IntArray:

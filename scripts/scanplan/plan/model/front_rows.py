@@ -13,6 +13,7 @@ import shapely
 from scipy import ndimage
 
 from scanplan.geometry import intersections, overlays
+from scanplan.geometry.cell_runs import find_cell_runs
 from scanplan.geometry.lines import Line, Span
 from scanplan.plan import wall_ground
 from scanplan.plan.model import line_labels
@@ -191,9 +192,7 @@ def _find_runs(is_answered: BoolArray, first_m: FloatArray) -> Iterator[_Run]:
         for of in (share, around / (far - near))
     )
     is_row = (here >= _ANSWERED) & (here > 2 * beside + _BESIDE)
-    edge = np.diff(np.pad(is_row, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    begins, ends = np.argwhere(edge == 1).tolist(), np.argwhere(edge == -1)[:, 1].tolist()
-    for (row, begin), end in zip(begins, ends, strict=True):
+    for row, begin, end in zip(*(of.tolist() for of in find_cell_runs(is_row)), strict=True):
         columns = begin + np.flatnonzero(is_answered[row, begin:end])
         if len(columns) and (columns[-1] + 1 - columns[0]) * _ALONG_M >= _LEAST_M:
             low_m, high_m = first_m[1] + _ALONG_M * np.array([columns[0], columns[-1] + 1])

@@ -10,9 +10,10 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
+from scanplan.geometry.cell_runs import find_cell_runs
 from scanplan.lab.evaluation.scores.scene import Scene
 from scanplan.lab.evaluation.scores.scene_file import object_array
-from scanplan.types import BoolArray, FilePath, FloatArray, IntArray
+from scanplan.types import BoolArray, FilePath, FloatArray
 
 _GRID_M = 1e-3  # of corners, for robust overlays: a fiftieth of any map's cell
 
@@ -41,17 +42,9 @@ def read_raster_scene(path: FilePath) -> Scene:
 
 def draw_cells(chosen: BoolArray, cell_m: float) -> BaseGeometry:
     """Return the ground of chosen cells (h, w), row 0 at y = 0, as one (Multi)Polygon."""
-    rows, begins, ends = _runs(chosen)
+    rows, begins, ends = find_cell_runs(chosen)
     boxes = shapely.box(begins * cell_m, rows * cell_m, ends * cell_m, (rows + 1) * cell_m)
     return overlays.unite_areas(boxes, grid=_GRID_M)
-
-
-def _runs(chosen: BoolArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Return the row, first column and column behind the last of each run of chosen cells."""
-    change = np.diff(np.pad(chosen.astype(np.int8), ((0, 0), (1, 1))), axis=1)
-    rows, begins = np.nonzero(change > 0)
-    _, ends = np.nonzero(change < 0)
-    return rows, begins, ends
 
 
 def _edges_m(room: BoolArray, wall: BoolArray, cell_m: float) -> FloatArray:
@@ -59,7 +52,7 @@ def _edges_m(room: BoolArray, wall: BoolArray, cell_m: float) -> FloatArray:
     lines = []
     for is_upright, (of_room, of_wall) in enumerate(((room, wall), (room.T, wall.T))):
         for below, above in ((of_room, of_wall), (of_wall, of_room)):
-            rows, begins, ends = _runs(below[:-1] & above[1:])
+            rows, begins, ends = find_cell_runs(below[:-1] & above[1:])
             at, low, high = (rows + 1) * cell_m, begins * cell_m, ends * cell_m
             run_m = np.stack([np.stack([low, at], axis=1), np.stack([high, at], axis=1)], axis=1)
             lines.append(run_m[..., ::-1] if is_upright else run_m)
