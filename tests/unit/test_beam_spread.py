@@ -6,13 +6,16 @@ import pytest
 from scanplan.rays.beam_spread import observe_beams
 
 
-def beams(*azimuth_degs, range_m=3.0):
-    """Return what scans show of their sensor's beams, of returns at these azimuths."""
+def beams(*azimuth_degs, range_m=3.0, further_deg=()):
+    """Return what scans show of their sensor's beams, of returns at these azimuths.
+
+    They look at further ones, too.
+    """
     scans = []
     for azimuth_deg in azimuth_degs:
         azimuth_rad = np.radians(np.sort((np.asarray(azimuth_deg, float) + 180) % 360 - 180))
         way = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
-        scans.append((azimuth_rad, range_m * way))
+        scans.append((azimuth_rad, range_m * way, np.radians(further_deg)))
     return observe_beams(scans)
 
 
@@ -30,6 +33,16 @@ class TestPlanarBeams:
         found = beams(HALF_TURN[np.abs(HALF_TURN) > 20])
         np.testing.assert_allclose(found.begin_rad, -np.pi / 2)
         np.testing.assert_allclose(found.wide_rad, np.pi)
+
+    def test_where_returns_were_left_out_is_no_end_of_it(self):
+        """Of a field of 270 degrees those of 100 are not given: more than it does not look at."""
+        field = np.arange(-135.0, 136.0)
+        given = field[np.abs(field) > 50]
+        assert np.degrees(beams(given).wide_rad) == pytest.approx(360 - 102)
+        found = beams(given, further_deg=np.arange(-50.0, 51.0, 5.0))
+        assert np.degrees(found.wide_rad) == pytest.approx(270)
+        assert np.degrees(found.begin_rad) == pytest.approx(-135)
+        assert found.per_deg == pytest.approx(1)
 
     def test_of_a_sensor_that_looks_all_around_no_gap_is_the_end(self):
         around = np.arange(-180.0, 180.0)
@@ -49,7 +62,7 @@ class TestPlanarBeams:
             [np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad]
         )
         # two may be stray
-        assert observe_beams([(azimuth_rad, ways_m)]).reach_m == pytest.approx(6.0)
+        assert observe_beams([(azimuth_rad, ways_m, np.empty(0))]).reach_m == pytest.approx(6.0)
 
     def test_of_no_scans_and_of_one_beam_none_is_known(self):
         assert beams().per_deg.shape == (0,) and beams().reach_m == 0

@@ -19,6 +19,7 @@ from scanplan.changes.verdicts import CHANGED, GONE, MOVED, SAME, Change
 from scanplan.errors import StageError
 from scanplan.exports import drawing
 from scanplan.exports.changes import compared_sheet, growth_sheet
+from scanplan.rays.azimuth_sectors import middles_rad
 from scanplan.store import schemas, tables
 from scanplan.store.registered_scans import RegisteredScans
 
@@ -100,6 +101,10 @@ def test_what_a_later_survey_overtook_is_left_out_and_the_rest_kept():
     drive = Drive("a", own, PlaneMotion(), 0.0, 0.0, (places,))
     for (_, kept), (_, known) in zip(drive.scans(), own[0].scans(), strict=True):
         assert 0 < len(kept) < len(known) and kept[:, 0].max() < 4.8
+    # from (1, 1) the ground is seen from atan(-1 / 3.8) to atan(4 / 3.8): -14.7 to 46.5 degrees
+    degrees = np.degrees(middles_rad(drive.left_out[0]))
+    np.testing.assert_allclose(degrees, np.arange(-12.5, 48.0, 5.0))
+    assert not replace(drive, stale=()).left_out[0].any()
     everything = replace(drive, stale=(replace(NOWHERE, built=shapely.box(-9, -9, 9, 9)),))
     assert len(everything.known.scan_ids) == 0
 

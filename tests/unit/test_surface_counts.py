@@ -22,6 +22,7 @@ from scanplan.plan.model.surface_counts import (
     count_ends,
 )
 from scanplan.rays import ray_set
+from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 
 ALL = np.array([(-np.inf, np.inf)])
 SENSOR = (0.025, 2.0, 1.2)
@@ -184,6 +185,19 @@ class TestLost:
         tilted = count_ends(upset, NORTH, 0.0, 4.0, own).ends
         assert tilted[..., LOST].sum() == 0
         np.testing.assert_array_equal(tilted[..., :LOST] > 0, counts.ends[..., :LOST] > 0)
+
+    def test_rays_that_were_left_out_are_not_lost(self, looked, counts):
+        own = [Side(NORTH, 0.24, ALL)]
+        jambs_m = np.array([(1.65, 0), (2.35, 0)])
+        ways_m = jambs_m - looked.sensors_m[:, None, :2]
+        first, last = number_sectors(np.arctan2(ways_m[..., 1], ways_m[..., 0])).T
+        sectors = np.arange(N_SECTORS)
+        left_out = (first[:, None] <= sectors) & (sectors <= last[:, None])
+        known = count_ends(replace(looked, left_out=left_out), NORTH, 0.0, 4.0, own).ends
+        is_hole = np.abs(counts.middles_m - 2.0) < 0.35
+        assert counts.ends[is_hole, ..., LOST].sum() > 10
+        assert known[is_hole, ..., LOST].sum() == 0
+        np.testing.assert_array_equal(known[..., :LOST] > 0, counts.ends[..., :LOST] > 0)
 
     def test_rays_that_never_come_back_are_lost_where_they_were_sent(self, counts):
         lost = counts.ends[..., LOST].sum(axis=(1, 2))

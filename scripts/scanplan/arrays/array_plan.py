@@ -259,10 +259,20 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
     n_segments = len(found["scan_id"])
     messages.check_segments(_ORIGIN, found, np.ones(n_segments, bool), len(rows))
     rays = ray_set.gather_rays(
-        placed.scans(scan_ids), placed.sensors_m, planar=placed.planar, threads=threads
+        placed.scans(scan_ids),
+        placed.sensors_m,
+        planar=placed.planar,
+        left_out=placed.left_out,
+        threads=threads,
     )
     find_seen = partial(free_space.find_seen_floor, placed.scans(), placed.sensors_m)
-    find_dense = partial(fronts.gather_dense_rays, placed.scans, placed.sensors_m, threads=threads)
+    find_dense = partial(
+        fronts.gather_dense_rays,
+        placed.scans,
+        placed.sensors_m,
+        left_out=placed.left_out,
+        threads=threads,
+    )
     poses = placed.known.map_from_sensor
     plan = planning.make_plan(
         found,

@@ -1,6 +1,6 @@
 """Scans, poses and settings as a program gives them, checked."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,7 +13,7 @@ from scanplan.project.settings_schema import default_settings, read_schema
 from scanplan.recordings import clouds
 from scanplan.registration.results import move_to_map
 from scanplan.store.registered_scans import RegisteredScans
-from scanplan.types import FloatArray, IntArray, Settings
+from scanplan.types import BoolArray, FloatArray, IntArray, Settings
 
 _STEP_NS = 10**8  # ten scans a second, where nobody says when they were taken
 _RIGID = 1e-3  # of a rotation's products: what three printed digits leave
@@ -46,6 +46,11 @@ class Placed(Protocol):
     planar: bool
     known: RegisteredScans
     sensors_m: dict[int, FloatArray]
+
+    @property
+    def left_out(self) -> Mapping[int, BoolArray]:
+        """Sectors of azimuth (72,) in which not all points of a scan are given, by scan."""
+        ...
 
     @property
     def scan_ids(self) -> IntArray:
@@ -81,6 +86,7 @@ class PlacedScans:
             i: pose[:3, 3]
             for i, pose in zip(known.scan_ids.tolist(), known.map_from_sensor, strict=True)
         }
+        self.left_out: dict[int, BoolArray] = {}
         self._given = given
 
     @property

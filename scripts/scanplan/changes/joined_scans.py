@@ -12,6 +12,7 @@ from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.stale_rays import StalePlaces
 from scanplan.errors import StageError
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
 
@@ -68,33 +69,44 @@ class Drive:
     @property
     def n_points(self) -> IntArray:
         """How many points are kept of each scan of `known`, (n,) int64."""
-        return np.array([kept.sum() for kept in self._kept.values()], np.int64)
+        return np.array([kept.sum() for kept, _ in self._kept.values()], np.int64)
+
+    @property
+    def left_out(self) -> list[BoolArray]:
+        """Of each scan of `known`, in which sectors of azimuth (72,) rays were overtaken."""
+        return [left_out for _, left_out in self._kept.values()]
 
     def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
         wanted = self.known.scan_ids.tolist() if scan_ids is None else list(map(int, scan_ids))
         for scan_id, xyz_m in self.own[0].scans(wanted):
-            yield scan_id, self._move(xyz_m[self._kept[scan_id]]).astype(np.float32)
+            yield scan_id, self._move(xyz_m[self._kept[scan_id][0]]).astype(np.float32)
 
     def _move(self, xyz_m: FloatArray) -> FloatArray:
         xyz_m = xyz_m.astype(float)
         return np.column_stack([self.motion.move(xyz_m[:, :2]), xyz_m[:, 2] + self.lift_m])
 
     @cached_property
-    def _kept(self) -> dict[int, BoolArray]:
-        """Which points (n,) of a scan no later survey has overtaken, by scan; none without any."""
+    def _kept(self) -> dict[int, tuple[BoolArray, BoolArray]]:
+        """Which points (n,) of a scan no later survey has overtaken, by scan; none without any.
+
+        And in which sectors of azimuth (72,) the others are.
+        """
         store, registered = self.own
         sensors_m = self._move(registered.map_from_sensor[:, :3, 3]) - [0, 0, self.floor_m]
         scans = store.scans(registered.scan_ids)
         found = {}
         for (scan_id, xyz_m), sensor_m in zip(scans, sensors_m, strict=True):
             is_kept = np.ones(len(xyz_m), bool)
+            left_out = np.zeros(N_SECTORS, bool)
             if self.stale:
                 ends_m = self._move(xyz_m) - [0, 0, self.floor_m]
                 for places in self.stale:
                     is_kept &= ~places.find_rays(sensor_m, ends_m, planar=store.planar)
+                way_x_m, way_y_m = (ends_m - sensor_m)[~is_kept, :2].T
+                left_out[number_sectors(np.arctan2(way_y_m, way_x_m))] = True
             if is_kept.any():
-                found[scan_id] = is_kept
+                found[scan_id] = (is_kept, left_out)
         return found
 
 
@@ -136,6 +148,8 @@ class JoinedScans:
         Numbered from 0, survey after survey.
     sensors_m : dict of int to (3,) float64
     n_points : (n,) int64
+    left_out : dict of int to (72,) bool
+        Sectors of azimuth in which rays of a scan were overtaken.
     """
 
     def __init__(self, drives: Sequence[Drive], settings: Settings) -> None:
@@ -153,6 +167,8 @@ class JoinedScans:
         self.n_points = np.concatenate([drive.n_points for drive in drives])
         places_m = self.known.map_from_sensor[:, :3, 3]
         self.sensors_m = dict(zip(self.scan_ids.tolist(), places_m, strict=True))
+        left_out = (sectors for drive in drives for sectors in drive.left_out)
+        self.left_out = dict(zip(self.scan_ids.tolist(), left_out, strict=True))
 
     @property
     def scan_ids(self) -> IntArray:

@@ -8,10 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry.tolerances import ROUNDING
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 N_SECTORS = 72
 """Of 5 degrees each: wider than what is between two firings of any sensor."""
+
+
+def number_sectors(azimuth_rad: FloatArray) -> IntArray:
+    """Return the sector of each azimuth, -pi to pi.
+
+    >>> number_sectors(np.array([-np.pi, 0.0, np.pi])).tolist()
+    [0, 36, 71]
+    """
+    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
+    return np.minimum(sector, N_SECTORS - 1)
+
+
+def middles_rad(sectors: BoolArray) -> FloatArray:
+    """Return the azimuths of the middles of some sectors (72,), increasing."""
+    return (np.flatnonzero(sectors) + 0.5) * (2 * np.pi / N_SECTORS) - np.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +107,7 @@ def cull_spans(
     """
     straight = -np.sign(side_m)[:, None] * normal
     straight_rad = np.arctan2(straight[:, 1], straight[:, 0])[:, None]
-    middle_rad = (np.arange(N_SECTORS) + 0.5) * (2 * np.pi / N_SECTORS) - np.pi
+    middle_rad = middles_rad(np.ones(N_SECTORS, bool))
     apart_rad = np.abs((middle_rad - straight_rad + np.pi) % (2 * np.pi) - np.pi)
     straightest = np.cos(np.maximum(apart_rad - np.pi / N_SECTORS, 0))
     gone_m = sectors.reach_m[scans] * np.maximum(straightest, 0)

@@ -49,25 +49,26 @@ class PlanarBeams:
         return np.where(is_seen & (distance_m <= self.reach_m), per_deg, 0.0)
 
 
-def observe_beams(scans: Iterable[tuple[FloatArray, FloatArray]]) -> PlanarBeams:
+def observe_beams(scans: Iterable[tuple[FloatArray, FloatArray, FloatArray]]) -> PlanarBeams:
     """Return the field, spacing and reach of a planar sensor's beams.
 
     Parameters
     ----------
-    scans : iterable of ((n,) float, (n, 3) float)
+    scans : iterable of ((n,) float, (n, 3) float, (k,) float)
         Azimuths of each scan's returns, increasing, -pi to pi, and the ways to them from its
-        sensor.
+        sensor; and azimuths towards which it looked, too, though no return is given.
     """
     fields = []
     ranges_m = [np.zeros(FEW)]
-    for azimuth_rad, way_m in scans:
+    for azimuth_rad, way_m, further_rad in scans:
         spacing_rad = column_spacing_rad(azimuth_rad, way_m)
         if spacing_rad <= 0:
             fields.append((0.0, 0.0, 0.0))
             continue
-        steps_rad = np.diff(azimuth_rad, append=azimuth_rad[:1] + 2 * np.pi)
+        looked_rad = np.sort(np.concatenate([azimuth_rad, further_rad]))
+        steps_rad = np.diff(looked_rad, append=looked_rad[:1] + 2 * np.pi)
         widest = int(steps_rad.argmax())
-        begin_rad = azimuth_rad[(widest + 1) % len(azimuth_rad)]
+        begin_rad = looked_rad[(widest + 1) % len(looked_rad)]
         fields.append((begin_rad, 2 * np.pi - steps_rad[widest], 1 / np.rad2deg(spacing_rad)))
         ranges_m.append(np.hypot(way_m[:, 0], way_m[:, 1]))
     begin_rad, wide_rad, per_deg = np.array(fields, float).reshape(-1, 3).T

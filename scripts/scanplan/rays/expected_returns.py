@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.rays import usual_returns
+from scanplan.rays.azimuth_sectors import number_sectors
 from scanplan.rays.face_rays import FaceRays
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import FEW, ON_M, STRAY_SHARE, STRETCH_M
@@ -84,9 +85,9 @@ class WatchedColumns:
     distance_m : (v, n) float64
         From its sensor to the middle of each column, level.
     column_deg : (v, n) float64
-        The azimuth that a column fills; of those that it sees too obliquely nothing is expected,
-        `is_square`.
-    is_square : (v, n) bool
+        The azimuth that a column fills.
+    is_asked : (v, n) bool
+        Of others nothing is expected: it sees them too obliquely, or rays there were left out.
     azimuth_rad : (v, n) float64 or None
         Towards each column, of planar scans.
     width : int
@@ -101,7 +102,7 @@ class WatchedColumns:
     scan: IntArray
     distance_m: FloatArray
     column_deg: FloatArray
-    is_square: BoolArray
+    is_asked: BoolArray
     azimuth_rad: FloatArray | None
     width: int
     cell: IntArray
@@ -123,7 +124,7 @@ class WatchedColumns:
 
     def expect_returns(self, low_per_deg: FloatArray, high_per_deg: FloatArray) -> FloatArray:
         """Return the returns (v, n) to be expected between heights, of `per_deg_below` of both."""
-        return (high_per_deg - low_per_deg) * self.column_deg * self.is_square
+        return (high_per_deg - low_per_deg) * self.column_deg * self.is_asked
 
     def count_sent(self, heights_m: tuple[float, float], expected: FloatArray) -> SentRays:
         """Return the rays that were sent to the columns between heights above the floor."""
@@ -160,11 +161,16 @@ def watch_columns(
     side_m = views.side_m[looking, None]
     away_m = low_m + column_m * (np.arange(count) + 0.5) - views.sensor_along_m[looking, None]
     distance_m = np.hypot(away_m, side_m)
+    is_asked = np.abs(away_m) < grazing_m[looking, None]
     azimuth_rad = None
-    if rays.planar:
+    is_partial = bool(rays.left_out.any())
+    if rays.planar or is_partial:
         # from the shortest way to the plane
         normal_x, normal_y = views.normal[looking].T[:, :, None]
         azimuth_rad = np.arctan2(-normal_y, -normal_x) + np.arctan2(away_m, side_m)
+    if azimuth_rad is not None and is_partial:
+        sector = number_sectors((azimuth_rad + np.pi) % (2 * np.pi) - np.pi)
+        is_asked &= ~rays.left_out[views.scan[looking, None], sector]
     view, along_m = face.view, face.along_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
@@ -177,8 +183,8 @@ def watch_columns(
         scan=views.scan[looking],
         distance_m=distance_m,
         column_deg=np.rad2deg(column_m * side_m / distance_m**2),
-        is_square=np.abs(away_m) < grazing_m[looking, None],
-        azimuth_rad=azimuth_rad,
+        is_asked=is_asked,
+        azimuth_rad=azimuth_rad if rays.planar else None,
         # of one beam there are few; as many columns on either side
         width=2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH,
         cell=row.take(view.take(rows)) * count + np.minimum(column, count - 1),

@@ -43,6 +43,8 @@ class RaySet:
     is_level : (s,) bool
         Which were taken with the sensor upright: how many rays others send up or down changes with
         the direction, so that of them nothing is known to be lost.
+    left_out : (s, 72) bool
+        In which sectors of azimuth rays were left out: of these nothing is known to be lost either.
     """
 
     scan_ids: IntArray
@@ -53,6 +55,7 @@ class RaySet:
     floor_z_m: float
     planar: bool
     is_level: BoolArray
+    left_out: BoolArray
 
     @property
     def ground_z_m(self) -> float:
@@ -95,17 +98,18 @@ class RaySet:
 
         See `usual_returns`.
         """
-        return np.array(
-            [
-                usual_returns.count_returns_below(azimuth_rad, way_m)
-                for azimuth_rad, way_m in self.ways()
-            ]
-        )
+        usual = []
+        for (azimuth_rad, way_m), left_out in zip(self.ways(), self.left_out, strict=True):
+            is_whole = ~left_out[azimuth_sectors.number_sectors(azimuth_rad)]
+            usual.append(usual_returns.count_returns_below(azimuth_rad[is_whole], way_m[is_whole]))
+        return np.array(usual)
 
     @cached_property
     def beams(self) -> beam_spread.PlanarBeams:
         """What planar scans show of the beams that their sensor sends."""
-        return beam_spread.observe_beams(self.ways())
+        left_out = map(azimuth_sectors.middles_rad, self.left_out)
+        scans = zip(self.ways(), left_out, strict=True)
+        return beam_spread.observe_beams((*ways, left_rad) for ways, left_rad in scans)
 
     @property
     def rows(self) -> list[slice]:
@@ -188,6 +192,7 @@ def gather_rays(
     sensors_m: Mapping[int, FloatArray],
     *,
     planar: bool,
+    left_out: Mapping[int, BoolArray] | None = None,
     threads: int = 1,
 ) -> RaySet:
     """Sort the points of scans by azimuth.
@@ -198,6 +203,8 @@ def gather_rays(
         `scan_id`, increasing, and points in the map frame.
     sensors_m : dict of int to (3,) float
         Sensor's position by `scan_id`.
+    left_out : dict of int to (72,) bool, optional
+        Sectors of azimuth in which a scan's points are not all given, see `RaySet`.
     threads : int
         Cores to use.
 
@@ -227,6 +234,8 @@ def gather_rays(
     at_m = np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3)
     if planar and len(xyz_m):
         at_m[:, 2] = np.median(xyz_m[:, 2])
+    of_scan = left_out or {}
+    whole = np.zeros(azimuth_sectors.N_SECTORS, bool)
     return RaySet(
         scan_ids=np.array(scan_ids, np.int64),
         sensors_m=at_m,
@@ -238,6 +247,7 @@ def gather_rays(
         else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
         planar=bool(planar),
         is_level=np.ones(len(scan_ids), bool),
+        left_out=np.array([of_scan.get(i, whole) for i in scan_ids], bool).reshape(-1, len(whole)),
     )
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from scanplan.rays.azimuth_sectors import N_SECTORS
+from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 from scanplan.types import FloatArray, IntArray
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
@@ -22,8 +22,7 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     (1801,) float64
         Below each elevation from -90 degrees on, in steps of 0.1 degrees.
     """
-    sector = ((azimuth_rad + np.pi) / (2 * np.pi) * N_SECTORS).astype(np.int64)
-    sector = np.minimum(sector, N_SECTORS - 1)
+    sector = number_sectors(azimuth_rad)
     seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
     elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
     n_rows = 180 * _ROWS_PER_DEG

@@ -16,7 +16,7 @@ from scanplan.plan.model.surface_counts import Side, SurfaceCounts
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.ray_set import RaySet, gather_rays
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
 _EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
 _THROUGH = 0.5  # of the rays to a row: what more of come through panes is outside, or mirrored
@@ -42,6 +42,7 @@ def gather_dense_rays(
     read_scans: Callable[[IntArray], Iterable[tuple[int, FloatArray]]],
     sensors_m: Mapping[int, FloatArray],
     *,
+    left_out: Mapping[int, BoolArray] | None = None,
     threads: int = 1,
 ) -> RaySet:
     """Return the rays of planar scans from all along the way, one scan of each place.
@@ -52,10 +53,13 @@ def gather_dense_rays(
         Returns `scan_id` and points (n, 3) in the map frame of some scans.
     sensors_m : dict of int to (3,) float64
         The sensor's position by `scan_id`, increasing, of all retained scans.
+    left_out : dict of int to (72,) bool, optional
+        See `ray_set.gather_rays`.
     """
     rows = choose_scans(np.array(list(sensors_m.values()))[:, :2])
     scan_ids = np.array(list(sensors_m))[rows]
-    return gather_rays(read_scans(scan_ids), sensors_m, planar=True, threads=threads)
+    scans = read_scans(scan_ids)
+    return gather_rays(scans, sensors_m, planar=True, left_out=left_out, threads=threads)
 
 
 def choose_scans(sensors_m: FloatArray) -> IntArray:
