@@ -225,6 +225,8 @@ EDITS: dict[str, tuple[Edit, ...]] = {
         # a refrigerator hides most of this part, the other side of a passage
         Edit("wall", GONE, ((3.2, 7.0), (3.2, 8.0)), counts=False),
         Edit("wall", GONE, ((3.2, 9.2), (3.2, 11.85))),
+        # in this wall
+        Edit("opening", GONE, ((3.2, 8.0), (3.2, 9.2))),
         Edit("wall", NEW, ((11.3, 1.7), (14.7, 1.7))),
         Edit("opening", GONE, ((13.4, 5.0), (14.2, 5.0))),
         Edit("opening", NEW, ((11.2, 3.15), (11.2, 4.05))),

@@ -45,7 +45,7 @@ def compare(a, b):
     fit = fit_frame(a.faces, b.faces, PlaneMotion())
     shifts = face_shifts.measure_shifts(a, b, fit)
     changes = wall_changes.compare_walls(a, b, shifts)
-    changes += opening_changes.compare_openings(a, b)
+    changes += opening_changes.compare_openings(a, b, changes)
     changes += room_changes.compare_rooms(a, b, changes)
     return changes + room_changes.compare_pieces(a, b, schemas.PIECE)
 
@@ -167,6 +167,23 @@ def test_a_wall_that_rays_go_through_is_gone_and_the_other_way_round_new():
     assert gone[0].is_change and gone[0].shape.length > 4.4
     new = told(compare(b, a), "wall")
     assert [(c.verdict, c.number_a, c.number_b) for c in new] == [(NEW, -1, 4)]
+
+
+def test_a_door_goes_and_comes_with_the_wall_around_it():
+    a, b = survey(), survey([], [])
+    for first, second, verdict in ((a, b, GONE), (b, a, NEW)):
+        changes = compare(first, second)
+        walls, (door,) = told(changes, "wall"), told(changes, "opening")
+        assert {c.verdict for c in walls} == {verdict} == {door.verdict}
+        assert door.is_change and door.p == min(c.p for c in walls)
+    # beside a part of the wall that still stands it is open, and no more is known
+    part = survey([(5, 0, 5, 2.9)], [])
+    (door,) = [c for c in compare(a, part) if c.table == "opening"]
+    assert (door.verdict, door.number_b) == (SAME, -1)
+    # a part that is farther away says nothing of it
+    rest = survey([(5, 0, 5, 2.4)], [])
+    (door,) = told(compare(a, rest), "opening")
+    assert (door.verdict, door.number_b) == (GONE, -1)
 
 
 def test_a_wall_that_nobody_looked_at_is_not_seen():

@@ -82,7 +82,7 @@ def compare_placed(a: Survey, b: Survey, tie: FrameTie) -> Comparison:
     shifts = face_shifts.measure_shifts(a, b, tie.fit)
     curves = measure_curves(a, b, tie.fit)
     changes = join_curves(wall_changes.compare_walls(a, b, shifts), curves)
-    changes += opening_changes.compare_openings(a, b)
+    changes += opening_changes.compare_openings(a, b, changes)
     changes += room_changes.compare_rooms(a, b, changes)
     changes += room_changes.compare_pieces(a, b, COLUMN)
     return Comparison(a, b, tie, changes)

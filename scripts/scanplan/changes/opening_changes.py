@@ -27,6 +27,7 @@ from scanplan.plan.floorplan import WAYS, centrelines_m
 from scanplan.plan.tolerances import END_M
 
 _NEAR_M = 0.6  # across: an opening of a wall that has moved has moved with it
+_BESIDE_M = 0.3  # from a jamb: what becomes of shorter stretches of wall is not told
 _COSINE = math.cos(math.radians(10))
 _OVERLAP = 0.5  # of the narrower of two: they are one
 _PASSED = 0.5  # of cells between two places of an edge
@@ -42,13 +43,15 @@ _KINDS = ("door", "passage", "window", "glass")
 """Types that say what an opening is: a gap says that this is not known."""
 
 
-def compare_openings(a: Survey, b: Survey) -> list[Change]:
+def compare_openings(a: Survey, b: Survey, walls: Sequence[Change] = ()) -> list[Change]:
     """Return what became of the openings of a that are in walls, and which of b are new.
 
     Parameters
     ----------
     a, b : Survey
         In one frame.
+    walls : sequence of Change
+        What became of their walls: an opening goes, and comes, with the wall around it.
     """
     of_a, of_b = list(_list_openings(a)), list(_list_openings(b))
     matched = _match(of_a, of_b)
@@ -60,8 +63,28 @@ def compare_openings(a: Survey, b: Survey) -> list[Change]:
         _judge_pair(one, other, a, b, sigmas_m[_are_ways(one, other)]) for one, other in known
     ]
     gone = [_judge_alone(of_a[i], a, b) for i in matched.lone_a if _is_known(of_a[i])]
-    new = [_judge_alone(of_b[j], b, a).turned() for j in matched.lone_b if _is_known(of_b[j])]
-    return [*paired, *gone, *new]
+    new = [_judge_alone(of_b[j], b, a) for j in matched.lone_b if _is_known(of_b[j])]
+    turned = [wall.turned() for wall in walls]
+    return [
+        *paired,
+        *(_take_along(change, a, walls) for change in gone),
+        *(_take_along(change, b, turned).turned() for change in new),
+    ]
+
+
+def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
+    """Return an opening that is open still, or gone if its wall is on both sides of it."""
+    host = int(of.plan.openings["wall"][of.plan.openings["opening"] == alone.number_a][0])
+    parts = [wall for wall in walls if wall.number_a == host]
+    if alone.verdict != SAME or not parts:
+        return alone
+    jambs = shapely.get_point(alone.shape, [0, -1])
+    far_m = shapely.distance(jambs[:, None], np.array([part.shape for part in parts]))
+    beside = [parts[i] for i in far_m.argmin(axis=1).tolist()]
+    is_gone = far_m.min(axis=1).max() <= _BESIDE_M
+    if not is_gone or not all(part.verdict == GONE and part.is_change for part in beside):
+        return alone
+    return replace(alone, verdict=GONE, p=min(part.p for part in beside))
 
 
 def _is_known(opening: Opening) -> bool:

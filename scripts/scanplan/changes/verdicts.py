@@ -15,7 +15,7 @@ VERDICTS = (SAME, MOVED, GONE, NEW, SHUT, OPENED, NOT_SEEN)
 CHANGES = (MOVED, GONE, NEW)
 STATES = (SHUT, OPENED)
 """Of doors: what rays show, though the building is the same unless a shut one is walled up."""
-_SEEN_FROM_LATER = {GONE: NEW, SHUT: OPENED, OPENED: SHUT}
+_SEEN_FROM_LATER = {GONE: NEW, NEW: GONE, SHUT: OPENED, OPENED: SHUT}
 LIKELY = 0.9
 """A change that is less likely is doubtful: to be verified on site."""
 CHANGED = 0.05
