@@ -11,7 +11,12 @@ from scanplan.changes.change_words import ChangeWords
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
-from scanplan.exports.sheet.lettering import clean_text, rotation, shorten_text
+from scanplan.exports.sheet.lettering import (
+    clean_text,
+    measure_width_mm,
+    rotation,
+    shorten_text,
+)
 from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
 from scanplan.exports.sheet.paper import Page, Slot, choose_page, fill_slots
 from scanplan.exports.sheet.styles import Letters, Paper
@@ -22,8 +27,7 @@ _MOST_ROWS = 40  # of the table: more are in the files beside
 _LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
 _TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
 _HEADS = ("No.", "Element", "Verdict", "By, cm", "p")
-_COLUMNS_MM = (6.0, 16.0, 14.5, 16.0, 7.5)  # wide: of the table, a slot in all
-_BROAD = 1.25  # what letters are reckoned with beyond what those of numbers take
+_ELEMENT = _HEADS.index("Element")  # what is cut off where a row is longer than a slot is wide
 
 
 @dataclass(frozen=True)
@@ -131,19 +135,33 @@ def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[
         for row in range(slot.rows)
     ]
 
+    numbered = [(str(number), *row) for number, row in enumerate(rows, 1)]
+    widths_mm = _find_widths_mm([_HEADS, *numbered])
+
     def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
-        for text, width in zip(texts, _COLUMNS_MM, strict=True):
+        for text, width_mm in zip(texts, widths_mm, strict=True):
             place = np.array([x + Paper.GAP, y])
-            short = shorten_text(text, Letters.SMALL, _BROAD * width)
+            short = shorten_text(text, Letters.SMALL, width_mm - Paper.GAP)
             yield Word(kind, short, place, Letters.SMALL, 0.0, 0.0)
-            x += width
+            x += width_mm
 
     for slot in slots:
         yield from write("note", slot.x_mm, slot.y_mm - Paper.ROW / 2, _HEADS)
     if not rows and places:
         yield from write("title", *places[0], ("", "none", "", "", ""))
-    for number, (row, place) in enumerate(zip(rows, places, strict=False), 1):
-        yield from write("title", *place, (str(number), *row))
+    for row, place in zip(numbered, places, strict=False):
+        yield from write("title", *place, row)
+
+
+def _find_widths_mm(rows: Sequence[Sequence[str]]) -> FloatArray:
+    """Return how wide columns are that hold all texts: of the table, a slot in all."""
+    texts_mm = [[measure_width_mm(text, Letters.SMALL) for text in row] for row in rows]
+    widths_mm = np.max(texts_mm, axis=0) + 2 * Paper.GAP
+    spare_mm = Paper.COLUMN - float(widths_mm.sum())
+    if spare_mm < 0:
+        widths_mm[_ELEMENT] += spare_mm
+        return widths_mm
+    return widths_mm + spare_mm / len(widths_mm)
 
 
 def _place_tags(page: Page, told: Sequence[Told], marks: Sequence[Mark]) -> Iterator[Word]:

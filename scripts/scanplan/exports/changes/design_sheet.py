@@ -126,20 +126,23 @@ def _list_values(
     found: AsBuilt, told: Sequence[Deviation], tolerances: str, facts: ComparedFacts, page: Page
 ) -> list[list[title.Value]]:
     compared = found.compared
-    n_faults = sum(of.is_fault for of in told)
+    counts = [
+        say_count(n, table)
+        for table in ("wall", "opening", "column", "room")
+        if (n := sum(of.is_fault and of.change.table == table for of in told))
+    ]
     undecided = sum(of.verdict == UNDECIDED for of in told)
     tied = warn_of_alike(found) or warn_of_others(compared.tie) or summarise_tie(compared.tie)
     counted = "; ".join(line for line in summarise_deviations(told) if line.startswith("wall"))
     return [
         [("Project", facts.project or compared.b.plan.name, 2), ("Drawing", "As built", 1)],
-        [("Design, a", compared.a.plan.name, 3)],
-        [("Survey, b", f"{compared.b.plan.name}, {facts.days[1]}", 3)],
+        [("Design, a", compared.a.plan.name, 2), ("Tolerances", tolerances, 1)],
         [
-            ("Differ", say_count(n_faults, "element"), 1),
-            ("Undecided", str(undecided), 1),
-            ("Tolerances", tolerances, 1),
+            ("Survey, b", f"{compared.b.plan.name}, {facts.days[1]}", 2),
+            ("Software", facts.version or "scanplan", 1),
         ],
+        [("Differ", ", ".join(counts) or "none", 2), ("Undecided", str(undecided), 1)],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "the design's", 1)],
-        [("Software", facts.version or "scanplan", 1), ("Walls", counted, 2)],
+        [("Walls", counted.removeprefix("wall: "), 3)],
         [("Fitted by walls", tied, 3)],
     ]

@@ -166,7 +166,7 @@ STYLES = {
     "corrected": Style("A-ANNO-REVS", "corrected by hand *", dashes_mm=(2.5, 0.7, 0.5, 0.7)),
     "unchanged": Style("A-CHNG-SAME", "as in both surveys", FAINT, "#d9d9d9"),
     "stood": Style("A-CHNG-SAME", "furniture, as it stood", "#a0a0a0"),
-    "unlooked": Style("A-CHNG-NSEN", "not seen by the other survey", INK, "#ffffff", _DOTTED),
+    "unlooked": Style("A-CHNG-NSEN", "not seen: nothing is told", INK, "#ffffff", _DOTTED),
     "gone": Style("A-CHNG-GONE", "gone: rays go through now", DOUBT, dashes_mm=_DASHED),
     "new": Style("A-CHNG-NEWW", "new: rays went through before", ADDED, "#bfe3d3"),
     "moved": Style("A-CHNG-MOVD", "moved: where it stands now", CARRIED, "#c4dbf0"),
