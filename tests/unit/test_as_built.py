@@ -10,6 +10,7 @@ import shapely
 from helpers.changing_floor import DOOR, INNER, survey
 from helpers.drawn_floor_making import OUTER_M, storey
 from scanplan.changes import comparison
+from scanplan.changes.change_words import ChangeWords
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.verdicts import NOT_SEEN
 from scanplan.design import as_built, deviation_table
@@ -29,7 +30,13 @@ from scanplan.design.tolerances import Tolerances
 from scanplan.errors import StageError
 from scanplan.exports import drawing
 from scanplan.exports.changes import design_sheet, model_facts
-from scanplan.exports.changes.compared_sheet import ComparedFacts
+from scanplan.exports.changes.compared_sheet import (
+    ComparedFacts,
+    Told,
+    compose_compared_sheet,
+    draw_areas,
+)
+from scanplan.exports.sheet.lettering import word_box
 from scanplan.geometry.lines import Line
 from scanplan.store import schemas, tables
 
@@ -221,6 +228,25 @@ def test_the_table_is_read_back_and_the_sheet_lists_what_differs(tmp_path):
     assert {"within", "far-beyond", "way"} <= kinds and "missing" not in kinds
     assert any(word.text.startswith("-10.0") for word in sheet.paper_words)
     assert drawing.draw_sheet(sheet) is not None
+
+
+def test_words_of_the_list_do_not_run_into_each_other():
+    rows = [
+        ChangeWords("wall a13/b10", "moved", "10.1 ± 1.0", "0.96"),
+        ChangeWords("window a113/b210", "kind differs", "+110.2 ± 10.8", "0.96"),
+    ]
+    told = [Told(row, shapely.Point(4, 2)) for row in rows]
+    marks = list(draw_areas("within", shapely.box(0, 0, 8, 5), "wall-0"))
+    for listed in (told[:1], told):
+        sheet = compose_compared_sheet(
+            "floor", (marks, []), listed, [], turn_deg=0.0, list_values=lambda _: [[("Of", "a", 3)]]
+        )
+        boxes = [word_box(word) for word in sheet.paper_words]
+        one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")
+        assert (one == other).all()
+    # all but the element is whole
+    texts = [word.text for word in sheet.paper_words]
+    assert set(rows[1][1:]) <= set(texts) and "window a113/b210" not in texts
 
 
 def test_models_state_the_gravest_of_an_element_and_topics_what_differs():
