@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import changes_bench
+import design_prior_bench
 import ifcopenshell
 import ifcopenshell.util.unit
 import numpy as np
@@ -19,6 +20,7 @@ from scanplan.design.deviations import DEVIATES, MISSING, Deviation
 from scanplan.design.tolerances import make_tolerances
 from scanplan.errors import StageError
 from scanplan.project.tolerance_file import read_tolerances
+from scanplan.types import Settings
 
 _LOCALISER = {"noise_m": 0.05, "noise_deg": 1.0, "jumps_per_min": 1.0}
 
@@ -73,8 +75,11 @@ CASES = {
 """By the name of a survey."""
 
 
-def bench(project: Path, folder: Path, models: Path) -> None:
-    """Simulate and plan surveys as far as they are not there, and print what is told of them."""
+def bench(project: Path, settings: Settings, folder: Path, models: Path) -> None:
+    """Simulate and plan surveys as far as they are not there, and print what is told of them.
+
+    And what plans are worth that have the designs as a prior, beside those without.
+    """
     for name, case in CASES.items():
         altered = folder / f"models/{name}.ifc"
         altered.parent.mkdir(parents=True, exist_ok=True)
@@ -88,6 +93,8 @@ def bench(project: Path, folder: Path, models: Path) -> None:
         }
         changes_bench.plan_survey(project, folder, name, simulated)
     evaluate(folder, models)
+    designs = {name: models / case.model for name, case in CASES.items()}
+    design_prior_bench.print_table(folder, designs, settings)
 
 
 def evaluate(folder: Path, models: Path) -> None:

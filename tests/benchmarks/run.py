@@ -66,7 +66,9 @@ element by element.
 and as far again at random, and counts what is settled rightly. Surveys are named as those of
 `guard`, with any seed; drives and plans are kept in FOLDER.
 
-`design` holds surveys of altered copies of published building models against these.
+`design` holds surveys of altered copies of published building models against these, and prints
+what plans of whole drives and parts are worth with the model as a prior and without; surveys are
+kept in FOLDER.
 
 `changes` compares surveys of the demo office with those of it after it was rebuilt, by other
 sensors and in another frame, and counts what is told rightly; surveys are kept in FOLDER.
@@ -231,11 +233,11 @@ def bench_walk(results: str, truth: str | None = None) -> None:
 
 
 def bench_design(folder: str) -> None:
-    """What is told of buildings that were built otherwise than designed."""
+    """What is told of buildings built otherwise than designed; what their designs tell a plan."""
     import design_bench
 
     models = (ROOT.parent / "shared/data/buildings").resolve()
-    design_bench.bench(ROOT, Path(folder), models)
+    design_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), models)
 
 
 def bench_changes(folder: str, *names: str) -> None:
