@@ -201,6 +201,8 @@ def test_the_sheet_of_both_marks_what_the_latest_alone_saw():
     sheet = growth_sheet.compose_growth_sheet(grown, facts)
     kinds = {mark.element: mark.kind for mark in sheet.marks}
     assert kinds["wall-4"] == "lately" and kinds["wall-0"] == "unchanged"
+    (stood,) = [mark for mark in sheet.marks if mark.kind == "gone"]
+    assert np.unique(stood.paths[0][:, 0].round(6)) == pytest.approx([4.9, 5.1])
     assert drawing.draw_sheet(sheet).axes
 
 

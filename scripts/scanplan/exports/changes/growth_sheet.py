@@ -11,6 +11,8 @@ from scanplan.changes.change_words import say_change
 from scanplan.changes.contributions import Contribution
 from scanplan.changes.growth import Grown
 from scanplan.changes.growth_table import summarise_growth
+from scanplan.changes.verdicts import GONE, MOVED
+from scanplan.exports.changes.change_shapes import list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
     Told,
@@ -63,6 +65,10 @@ def _draw(grown: Grown) -> Iterator[Mark]:
     rest = overlays.subtract_areas(bodies, overlays.unite_areas(taken))
     yield from draw_areas("unchanged", rest, "walls")
     yield from _draw_furniture(plan)
+    left = [of for step in grown.steps for of in list_drawn(step, _TOLD) if of.change.is_told]
+    for row, of in enumerate(left):
+        if of.change.verdict in (GONE, MOVED):
+            yield from draw_areas("gone", of.before, f"gone-{row}")
 
 
 def _style(wall: Contribution) -> str:
