@@ -6,16 +6,14 @@ that part rooms, and rooms that are one; openings and walls that are missing, th
 Then it is saved, and the stages run. A person's time is by the keystroke-level model.
 """
 
-import json
 import os
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from collections import Counter
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -23,7 +21,7 @@ import numpy as np
 import shapely
 
 from helpers import browser
-from helpers.pages import click, press
+from helpers.pages import click, on_screen, press
 from scanplan.lab.evaluation.scores import score_files
 
 _MINUTES = 10
@@ -31,6 +29,7 @@ _NEARER = float(np.exp(1))  # by one turn of the wheel, as the page has it
 _SIDES_M = 0.6  # from one side of a wall to the other
 _LEAST_M = 0.5  # of a wall or an opening that somebody would notice is not drawn
 _PATIENCE_S = 900  # of a run that makes a plan anew
+_UNFIT = "#corrections li.fault"  # what cannot be carried out
 SECONDS = {"K": 0.28, "P": 1.10, "H": 0.40, "M": 1.35}
 """Of an average typist: a key or button, pointing, a hand to the other device, a thought. Card,
 Moran and Newell 1980, The keystroke-level model for user performance time with interactive systems,
@@ -97,11 +96,11 @@ class Hand:
     def tap(self, x_m, y_m):
         """Click a place of the plan."""
         self._point()
-        click(self.page, self._find_on_screen(x_m, y_m))
+        click(self.page, on_screen(self.page, x_m, y_m))
 
     def come_near(self, line_m):
         """Turn the wheel with Ctrl over a line's middle, as far as both ends stay in sight."""
-        places = [self._find_on_screen(*place) for place in line_m]
+        places = [on_screen(self.page, *place) for place in line_m]
         left, top, right, bottom = self.page.run(
             "(r => [r.left, r.top, r.right, r.bottom])"
             "(document.getElementById('view').getBoundingClientRect())"
@@ -114,15 +113,6 @@ class Hand:
             turn = {"deltaX": 0, "deltaY": -300, "modifiers": 2}
             self.page.mouse("mouseWheel", *middle.tolist(), **turn)
 
-    def choose(self, selector, value):
-        """Take an entry of a list: it is opened, and the entry clicked."""
-        self._point()
-        self._point()
-        self.page.run(
-            f"(s => {{ s.value = {json.dumps(value)}; s.dispatchEvent(new Event('change')); }})"
-            f"(document.querySelector({json.dumps(selector)}))"
-        )
-
     def key(self, key):
         self.acts += "H" * self._is_at_mouse + "K"
         self._is_at_mouse = False
@@ -131,11 +121,6 @@ class Hand:
     def _point(self):
         self.acts += "H" * (not self._is_at_mouse) + "PK"
         self._is_at_mouse = True
-
-    def _find_on_screen(self, x_m, y_m):
-        matrix = "document.getElementById('plan').getScreenCTM()"
-        point = f"new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix})"
-        return self.page.run(f"(p => [p.x, p.y])({point})")
 
 
 def time_acts(acts):
@@ -278,10 +263,11 @@ def part_and_join(hand, said):
             hand.tap(*start)
             hand.tap(*end)
     for at, other in said.get("one", []):
-        rooms = [page.run(room_at.format(*place)) for place in (at, other)]
+        room = page.run(room_at.format(*at))
         hand.think()
-        if all(rooms) and open_card(hand, rooms[0], at):
-            hand.choose("#card select", rooms[1])
+        if room and open_card(hand, room, at):
+            hand.press("One with: tap the other", "#card")
+            hand.tap(*other)
 
 
 def draw_missing(hand, known, most_s):
@@ -302,33 +288,47 @@ def draw_missing(hand, known, most_s):
 
 
 def save(hand):
-    """Save and wait for the plan; how many seconds its stages take."""
+    """Save and wait for the plan, without what ends the run.
+
+    Returns
+    -------
+    machine_s : float
+        What the stages take.
+    unfit : list of str
+        What could not be carried out, in the page's words: taken back where it ended a run.
+    """
     page = hand.page
     made = page.run("planView.data.made")
     begin = time.monotonic()
-    hand.think()
-    # what was told of an earlier try is none of this one
-    page.run("document.getElementById('told').textContent = ''")
-    hand.press("Save and make the plan anew", "#corrections")
+    taken_back = []
     while True:
-        try:
+        hand.think()
+        # what was told of an earlier try is none of this one
+        page.run("document.getElementById('told').textContent = ''")
+        hand.press("Save and make the plan anew", "#corrections")
+        told = _wait(page, made, begin + _PATIENCE_S)
+        unfit = page.run(f"[...document.querySelectorAll('{_UNFIT}')].map(e => e.innerText)")
+        if not told:
+            return time.monotonic() - begin, taken_back + unfit
+        assert unfit, told
+        taken_back += unfit
+        for _ in unfit:
+            hand.think()
+            hand.press("×", _UNFIT)
+
+
+def _wait(page, made, deadline):
+    """Wait for a plan that is another one; return what the page tells where there is none."""
+    while time.monotonic() < deadline:
+        with suppress(AssertionError):  # the page that is about to be another one
             if page.run("planView.data.made") != made:
-                return time.monotonic() - begin
+                return ""
             told = page.run("document.getElementById('told').classList.contains('flag')"
                             " ? document.getElementById('told').innerText : ''")  # fmt: skip
-        except AssertionError:
-            told = ""  # the page that is about to be another one
-        wrong = re.search(r"entry (\d+)", told)
-        assert wrong or not told, told
-        if wrong:
-            # what cannot be carried out is taken back, as the page names it
-            print(f"  taken back: {told.partition(': ')[2]}")
-            hand.think()
-            hand._point()
-            page.run(f"document.querySelectorAll('#fresh li button')[{wrong[1]} - 1].click()")
-            return save(hand)
-        assert time.monotonic() - begin < _PATIENCE_S, "no plan was made"
+            if told:
+                return told
         time.sleep(0.2)
+    raise AssertionError("no plan was made")
 
 
 @contextmanager
@@ -378,6 +378,7 @@ class Walked:
     entries: list
     acts: str
     machine_s: float
+    unfit: list
 
 
 def walk_floor(results, truth=None):
@@ -396,9 +397,9 @@ def walk_floor(results, truth=None):
     before = score_files.score_results(placed)
     known = read_known(placed, before)
     with served(results) as address:
-        entries, hand, machine_s = _mend(address, results.name, known)
+        entries, hand, (machine_s, unfit) = _mend(address, results.name, known)
     after = score_corrected(placed)
-    return Walked(before.measures, after.measures, entries, hand.acts, machine_s)
+    return Walked(before.measures, after.measures, entries, hand.acts, machine_s, unfit)
 
 
 def _mend(address, name, known):
@@ -428,6 +429,9 @@ def bench(results, truth=None):
         f"{entry['element']} {entry.get('action', 'change')}" for entry in walked.entries
     )
     acts = Counter(walked.acts)
+    print(f"  {len(walked.unfit)} could not be carried out")
+    for words in walked.unfit:
+        print(f"    {' '.join(words.split())}")
     n_acts = acts["K"]
     print(f"{results.name}: {len(walked.entries)} things said: {dict(counts)}")
     print(

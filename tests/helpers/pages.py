@@ -1,9 +1,13 @@
 """Pages in a headless browser, as a person sees and uses them."""
 
+import contextlib
+import time
+
 import pytest
 
 from helpers import browser
 
+_PATIENCE_S = 60  # of a machine that is at other things, too
 needs_browser = pytest.mark.skipif(
     browser.find() is None,
     reason="no Chromium on the path (Debian: apt-get install chromium; or name one in CHROMIUM)",
@@ -43,3 +47,37 @@ def press(page, words, within="body"):
         f".find(b => b.textContent.trim() === {words!r} && b.getClientRects().length))"
     )
     click(page, place)
+
+
+def on_screen(page, x_m, y_m):
+    """Where a place of the map is in the window."""
+    matrix = "document.getElementById('plan').getScreenCTM()"
+    return page.run(f"(p => [p.x, p.y])(new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix}))")
+
+
+def tap(page, *places):
+    """Click places of the map, one after the other."""
+    for place in places:
+        click(page, on_screen(page, *place))
+
+
+def entries(page):
+    """What is said of the plan, without when it was."""
+    said = page.run("edits.entries()")
+    return [{k: v for k, v in entry.items() if k != "when"} for entry in said]
+
+
+def settle(page, condition):
+    """Wait for what a page does by itself; one that is about to be another one says nothing."""
+    deadline = time.monotonic() + _PATIENCE_S
+    while time.monotonic() < deadline:
+        with contextlib.suppress(AssertionError):
+            if page.run(condition):
+                return
+        time.sleep(0.025)
+    raise AssertionError(condition)
+
+
+def type_into(page, selector, words):
+    page.run(f"document.querySelector('{selector}').focus()")
+    page.type(words)

@@ -182,24 +182,48 @@ def test_each_control_and_check_point_has_its_residual(plan):
 
 
 @pytest.mark.parametrize(
-    ("entry", "said"),
+    ("line", "why"),
     [
         # the wall between the rooms, at x = 4.05, goes from y = -0.1 to 3.1
-        (
-            ("opening", [[4.05, -3], [4.05, 6]]),
-            r"reaches 2\.9 m beyond wall 5, of 3\.2 m; give a line",
-        ),
-        (("opening", [[4.05, 2], [4.05, 4]]), r"reaches 0\.9 m beyond wall 5"),
-        (("opening", [[3.6, 2.5], [4.5, 2.5]]), "runs across wall 5, not along it"),
-        (("wall", [[300, 0], [304, 0]]), r"lies 297 m beyond the plan, at most 100 m are drawn"),
-        (("wall", [[3, 1], [3, -200]]), r"lies 200 m beyond the plan"),
+        ([[4.05, -3], [4.05, 6]], "reaches 2.9 m beyond wall 5, of 3.2 m; give a line"),
+        ([[4.05, 2], [4.05, 4]], "reaches 0.9 m beyond wall 5"),
+        ([[3.6, 2.5], [4.5, 2.5]], "runs across wall 5, not along it"),
     ],
 )
-def test_what_is_added_off_its_wall_or_off_the_plan_is_told(plan, entry, said):
-    element, line = entry
-    kind = {"kind": "door"} if element == "opening" else {}
+def test_an_opening_that_fits_no_wall_is_told_and_the_rest_carried_out(plan, line, why):
+    gone = {"element": "wall", "at": [1.975, 3.1], "action": "remove"}
+    door = {"element": "opening", "action": "add", "line": line, "kind": "door"}
+    found = corrected(plan, door, gone)
+    (told,) = found.unmatched_corrections
+    assert told.startswith("entry 1: the line of the opening ") and why in told
+    assert found.n_corrections == 1
+    assert len(found.openings["wall"]) == len(floorplan_making.openings()["wall"])
+
+
+def test_a_door_that_opens_elsewhere_is_told_and_leaves_its_wall_whole(plan):
+    door = {"element": "opening", "action": "add", "line": [[4.05, 2.2], [4.05, 3]]}
+    found = corrected(plan, door | {"kind": "door", "swing": [9, 2]})
+    assert "beside the door" in found.unmatched_corrections[0]
+    assert found.solid("observed").covers(shapely.Point(4.05, 2.5))
+
+
+def test_a_door_may_be_said_before_its_wall(plan):
+    door = {"element": "opening", "action": "add", "line": [[1, 1.5], [1.9, 1.5]], "kind": "door"}
+    wall = {"element": "wall", "action": "add", "line": [[0, 1.5], [4, 1.5]]}
+    found = corrected(plan, door, wall)
+    assert found.openings["wall"][-1] == found.walls["wall"][-1]
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ([[300, 0], [304, 0]], r"lies 297 m beyond the plan, at most 100 m are drawn"),
+        ([[3, 1], [3, -200]], r"lies 200 m beyond the plan"),
+    ],
+)
+def test_a_wall_off_the_plan_is_told(plan, line, said):
     with pytest.raises(StageError, match=said):
-        corrected(plan, {"element": element, "action": "add", "line": line, **kind})
+        corrected(plan, {"element": "wall", "action": "add", "line": line})
 
 
 def test_an_opening_drawn_a_little_beyond_its_wall_is_added(plan):

@@ -1,21 +1,29 @@
 """The report as an editor: what a person says there is drawn, kept, taken back and written."""
 
-import contextlib
 import json
 import re
 import shutil
 import sys
-import threading
-import time
 
 import numpy as np
 import pytest
 
 from helpers import report_making
 from helpers.correcting import corrected, write_plan
-from helpers.pages import click, in_sight, middle_of, needs_browser, press, text_of
+from helpers.pages import (
+    click,
+    entries,
+    in_sight,
+    middle_of,
+    needs_browser,
+    on_screen,
+    press,
+    settle,
+    text_of,
+    type_into,
+)
+from helpers.serving import serving
 from scanplan.project import corrections_file
-from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
 from scanplan.store import schemas, tables
 from scanplan.validation import doubts
@@ -23,33 +31,6 @@ from scanplan.validation import doubts
 pytestmark = needs_browser
 CTRL, SHIFT = 2, 8  # of DevTools' modifier keys
 PHONE = {"width": 360, "height": 640}
-
-
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
-    return report_making.written(folder, report_making.files(folder), name="office")
-
-
-@pytest.fixture
-def page(report, chromium):
-    """The report of somebody who has said nothing yet."""
-    chromium.open(report.as_uri())
-    chromium.run("localStorage.clear()")
-    yield chromium.open(report.as_uri())
-    assert chromium.complaints == []
-
-
-def entries(page):
-    """What is said of the plan, without when it was."""
-    said = page.run("JSON.stringify(edits.entries())")
-    return [{k: v for k, v in e.items() if k != "when"} for e in json.loads(said)]
-
-
-def on_screen(page, x_m, y_m):
-    """Where a place of the map is in the window."""
-    matrix = "document.getElementById('plan').getScreenCTM()"
-    return page.run(f"(p => [p.x, p.y])(new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix}))")
 
 
 def label_of(page, room):
@@ -63,11 +44,6 @@ def ends_of(entry):
 
 def show(page, element):
     page.run(f"elements.showElement('{element}')")
-
-
-def type_into(page, selector, words):
-    page.run(f"document.querySelector('{selector}').focus()")
-    page.ask("Input.insertText", text=words)
 
 
 def shortcut(page, key, modifiers=CTRL):
@@ -395,29 +371,13 @@ def served(chromium, tmp_path):
     after = report_making.written(tmp_path, files, name="office", output="after.html")
     (results / "source.txt").write_text("recording\n")
     run = [sys.executable, "-c", RUN, str(after), str(results / "report.html")]
-    with EditServer(EditSession(results, run)) as server:
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
-        thread.start()
-        try:
-            chromium.open(server.address)
-            settle(chromium, "!document.getElementById('save').hidden")
-            yield chromium, server, recording
-        finally:
-            server.shutdown()
-            thread.join()
+    with serving(EditSession(results, run)) as server:
+        chromium.open(server.address)
+        settle(chromium, "!document.getElementById('save').hidden")
+        yield chromium, server, recording
     # what the server refuses the browser notes itself
     known = ("request of http://127.0.0.1", "Failed to load resource: the server responded")
     assert all(said.startswith(known) for said in chromium.complaints)
-
-
-def settle(page, condition):
-    """Wait for what a page does by itself; one that is about to be another one says nothing."""
-    for _ in range(400):
-        with contextlib.suppress(AssertionError):
-            if page.run(condition):
-                return
-        time.sleep(0.025)
-    raise AssertionError(condition)
 
 
 def test_what_is_saved_is_carried_out_and_the_page_shows_the_new_plan(served):

@@ -3,13 +3,12 @@
 What only one of them is asked is in test_edited_page.py and test_write_report.py.
 """
 
+import contextlib
 import io
 import json
 import os
 import shutil
 import sys
-import threading
-import time
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +16,9 @@ import pytest
 from PIL import Image
 
 from helpers import browser, firefox, floorplan_making, report_making
-from helpers.pages import click, in_sight, middle_of, press, text_of
+from helpers.pages import click, entries, in_sight, middle_of, on_screen, press, settle, text_of
+from helpers.serving import serving
 from scanplan.project import corrections_file
-from scanplan.project.run.edit_server import EditServer
 from scanplan.project.run.edit_session import EditSession
 
 PHONE = {"width": 360, "height": 640}
@@ -59,13 +58,6 @@ def either(request):
     return request.getfixturevalue("chromium")
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
-    files = report_making.files(folder)
-    return report_making.written(folder, files, name="office")
-
-
 @pytest.fixture
 def page(either, report):
     """The report of somebody who has said nothing yet."""
@@ -82,28 +74,6 @@ def complaints_of(page):
 def needs_webgl(page):
     if not page.run("!!document.createElement('canvas').getContext('webgl2')"):
         pytest.skip("this browser draws no WebGL here (Firefox: apt-get install xvfb)")
-
-
-def entries(page):
-    """What is said of the plan, without when it was."""
-    said = page.run("edits.entries()")
-    return [{k: v for k, v in entry.items() if k != "when"} for entry in said]
-
-
-def on_screen(page, x_m, y_m):
-    matrix = "document.getElementById('plan').getScreenCTM()"
-    return page.run(f"(p => [p.x, p.y])(new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix}))")
-
-
-def settle(page, condition):
-    for _ in range(400):
-        try:
-            if page.run(condition):
-                return
-        except AssertionError:
-            pass  # one that is about to be another one
-        time.sleep(0.025)
-    raise AssertionError(condition)
 
 
 # --- the editor ---
@@ -468,7 +438,6 @@ def served(either, tmp_path):
     after = report_making.written(tmp_path, files, name="office", output="after.html")
     (results / "source.txt").write_text("recording\n")
     shutil.copy(files["scans"], results / "scans.parquet")
-    made = []
 
     def serve(*, is_first):
         run = [sys.executable, "-c", RUN, str(before if is_first else after), str(results)]
@@ -476,20 +445,13 @@ def served(either, tmp_path):
         if not is_first:
             shutil.copy(before, results / "report.html")
         session = EditSession(results, run, run if is_first else None)
-        server = EditServer(session)
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
-        thread.start()
-        made.append((server, thread))
+        server = stack.enter_context(serving(session))
         if is_first:
             session.go_on()
         return server, gate
 
-    yield either, serve, recording
-    for server, thread in made:
-        server.shutdown()
-        thread.join()
-        server.session.end()
-        server.server_close()
+    with contextlib.ExitStack() as stack:
+        yield either, serve, recording
 
 
 def test_what_is_saved_is_carried_out_stopped_and_gone_on_with(served):

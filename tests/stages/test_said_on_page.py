@@ -1,45 +1,11 @@
 """More that the report's page lets a person say: leaves, things, tapes, points, settled rooms."""
 
-import json
-
 import pytest
 
-from helpers import report_making
 from helpers.correcting import corrected, write_plan
-from helpers.pages import click, in_sight, needs_browser, press, text_of
+from helpers.pages import entries, in_sight, needs_browser, press, tap, text_of, type_into
 
 pytestmark = needs_browser
-
-
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
-    return report_making.written(folder, report_making.files(folder), name="office")
-
-
-@pytest.fixture
-def page(report, chromium):
-    chromium.open(report.as_uri())
-    chromium.run("localStorage.clear()")
-    yield chromium.open(report.as_uri())
-    assert chromium.complaints == []
-
-
-def entries(page):
-    said = page.run("JSON.stringify(edits.entries())")
-    return [{k: v for k, v in e.items() if k != "when"} for e in json.loads(said)]
-
-
-def tap(page, *places):
-    matrix = "document.getElementById('plan').getScreenCTM()"
-    for x_m, y_m in places:
-        point = f"new DOMPoint({x_m}, {-y_m}).matrixTransform({matrix})"
-        click(page, page.run(f"(p => [p.x, p.y])({point})"))
-
-
-def type_into(page, selector, words):
-    page.run(f"document.querySelector('{selector}').focus()")
-    page.ask("Input.insertText", text=words)
 
 
 def carried_out(page, tmp_path):
@@ -134,3 +100,31 @@ def test_a_wall_is_as_high_as_said(page, tmp_path):
     (entry,) = entries(page)
     assert entry["height_m"] == 1.2
     assert carried_out(page, tmp_path).heights_m[5] == 1.2
+
+
+def test_parts_of_rooms_are_one_as_two_taps_say(page, tmp_path):
+    # a line parts the larger room, and what is east of it goes with the smaller one
+    page.run("edits.add({element: 'room', action: 'split', line: [[3, 0], [3, 3]]})")
+    page.run("edits.change('wall 5', {action: 'remove'})")
+    tap(page, (3.5, 2.5))
+    press(page, "One with: tap the other", "#card")
+    tap(page, (6.0, 2.5))
+    entry = entries(page)[-1]
+    assert entry["action"] == "merge"
+    assert [entry["at"], entry["with"]] == [
+        pytest.approx(m, abs=0.03) for m in ([3.5, 2.5], [6, 2.5])
+    ]
+    assert "Room 0 and Room 1 are one" in text_of(page, "#fresh")
+    found = carried_out(page, tmp_path)
+    assert sorted(found.rooms["area_m2"].round()) == [9.0, 12.0]
+
+
+def test_two_parts_of_one_room_are_one_again(page, tmp_path):
+    for x_m in (1, 3):
+        page.run(f"edits.add({{element: 'room', action: 'split', line: [[{x_m}, 0], [{x_m}, 3]]}})")
+    tap(page, (0.5, 2.5))
+    press(page, "One with: tap the other", "#card")
+    tap(page, (1.5, 2.5))
+    assert "Parts of Room 0 are one" in text_of(page, "#fresh")
+    assert in_sight(page, '[data-label="room 0"]') == 1
+    assert sorted(carried_out(page, tmp_path).rooms["area_m2"].round()) == [3.0, 9.0, 9.0]

@@ -1,6 +1,5 @@
 """The server behind the report's page: what it shows, saves and runs, and who may ask it."""
 
-import contextlib
 import http.client
 import json
 import os
@@ -12,6 +11,7 @@ import time
 
 import pytest
 
+from helpers.serving import serving as serve
 from scanplan.errors import StageError
 from scanplan.project.corrections_file import read_corrections
 from scanplan.project.run import growing
@@ -58,18 +58,8 @@ def folder(tmp_path):
     return results
 
 
-@contextlib.contextmanager
 def serving(folder, run=RUN):
-    session = EditSession(folder, [sys.executable, "-c", run])
-    with EditServer(session) as server:
-        thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
-        thread.start()
-        try:
-            yield server
-        finally:
-            server.shutdown()
-            thread.join()
-            session.end()
+    return serve(EditSession(folder, [sys.executable, "-c", run]))
 
 
 @pytest.fixture
@@ -201,7 +191,18 @@ def test_storeys_of_a_building_are_made_together(folder):
 def test_a_run_that_fails_is_told_in_one_line(folder):
     with serving(folder, FAILED) as server:
         save(server, WALL)
-        assert wait(server)["error"] == "correct_plan: entry 1: fault; remedy"
+        said = wait(server)
+        assert said["error"] == "correct_plan: entry 1: fault; remedy"
+        # which it names is what a page can show
+        assert said["entries"] == [WALL] and ask(server, "api/state")[1]["broken"]
+
+
+def test_entries_that_cannot_be_read_are_none(folder):
+    with serving(folder, FAILED) as server:
+        save(server, WALL)
+        wait(server)
+        (folder.parents[1] / "rec/corrections.yaml").write_text("corrections: [")
+        assert wait(server)["entries"] == []
 
 
 def test_while_a_run_is_at_work_nothing_is_saved(folder):
@@ -385,7 +386,7 @@ def test_each_change_is_in_a_log_with_the_time(server, folder):
 
 def test_the_state_says_what_is_saved_and_which_plan_is_shown(server):
     assert ask(server, "api/state")[1] == {
-        "entries": [], "revision": "", "page": "abc", "running": False,
+        "entries": [], "revision": "", "page": "abc", "running": False, "broken": False,
     }  # fmt: skip
     save(server, WALL)
     wait(server)

@@ -143,7 +143,8 @@ def report_page(
         in_space=in_space,
         top_m=math.ceil(in_space["height_m"] * 20) / 20,
         three=solid_view.pack_script(sources["three.js"]),
-        data=_script_data(survey, run, objective, drawn),
+        data=_script_data(survey, run, objective, drawn)
+        | {"unmatched": list(plan.unmatched_corrections)},
     )
 
 

@@ -28,25 +28,33 @@ const choices = (() => {
     return [...others.map(([each, words]) => say(`It is ${words}`, { kind: each })), remove("It is wall")];
   }
 
-  function shape(element, then) {
+  // of a room also where it was tapped: a line may part it from the rest that its label lies in
+  function shape(element, then, tapped) {
     const [kind] = element.split(" ");
     if (kind === "face") return [];
     if (kind !== "room") return [button("Move or resize", () => startMove(element, then))];
+    const at = tapped && edits.nearest("room", tapped) === element ? tapped : edits.placeOf(element);
+    const joined = (other) => edits.add({ element: "room", action: "merge", at, with: other });
     const others = [...document.querySelectorAll("#plan .room")].map((room) => room.dataset.element).filter((each) => each !== element);
     const split = button("Two rooms: draw the line", () => {
       then();
       document.getElementById("plan").focus({ preventScroll: true });
       tools.begin("split", (line) => edits.add({ element: "room", action: "split", line }), "Tap on one wall, then on the other");
     });
-    if (!others.length) return [split];
+    const join = button("One with: tap the other", () => {
+      then();
+      document.getElementById("plan").focus({ preventScroll: true });
+      tools.begin("place", joined, "Tap in the room, or the part of one, that it is one with");
+    });
+    if (!others.length) return [split, join];
     const select = make("select", "", { "aria-label": "one room with" });
     select.append(make("option", "One room with …", { value: "" }), ...others.map((room) => make("option", roomName(room), { value: room })));
     select.addEventListener("change", () => {
       if (!select.value) return;
-      edits.add({ element: "room", action: "merge", at: edits.placeOf(element), with: edits.placeOf(select.value) });
+      joined(edits.placeOf(select.value));
       then();
     });
-    return [split, select];
+    return [split, join, select];
   }
   function startMove(element, then) {
     then();
@@ -99,8 +107,14 @@ const choices = (() => {
     const words = where.startsWith("room ") ? roomName(where) : where;
     if (element === "length") return `Taped ${entry.length_m.toFixed(3)} m`;
     if (action === "settle") return `${edits.nearest("room", entry.at) ? roomName(edits.nearest("room", entry.at)) : "A room"} ${nouns.settle}`;
-    if (action === "add") return `New ${kind ?? element}`;
-    const named = (place) => (edits.nearest("room", place) ? roomName(edits.nearest("room", place)) : "a room");
+    const room = (place) => edits.nearest("room", place);
+    const named = (place) => (room(place) ? roomName(room(place)) : "a room");
+    if (action === "add") {
+      const size = line && ` of ${Math.hypot(line[1][0] - line[0][0], line[1][1] - line[0][1]).toFixed(2)} m`;
+      const at = room(edits.spotOf(entry));
+      return [`New ${kind ?? element}`, size, at && ` in ${roomName(at)}`].filter(Boolean).join("");
+    }
+    if (action === "merge" && room(entry.at) && room(entry.at) === room(entry.with)) return `Parts of ${named(entry.at)} are one`;
     if (action === "merge") return `${named(entry.at)} and ${named(entry.with)} are one`;
     if (action === "split") return `${named(edits.middle(line))} is two rooms`;
     const cm = (text, m) => m !== undefined && `${text} ${Number((100 * m).toFixed(1))} cm`;

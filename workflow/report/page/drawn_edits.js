@@ -60,7 +60,7 @@
       const [room, other] = [entry.at, entry.with].map((place) => edits.nearest("room", place));
       for (const each of [room, other]) if (each) draw("joined", shape(each));
       if (room) relabel(room, "area to be recomputed", true);
-      if (other && room) plan.querySelector(`[data-label="${other}"]`).classList.add("off");
+      if (other && room && other !== room) plan.querySelector(`[data-label="${other}"]`).classList.add("off");
     } else if (entry.action === "remove") {
       draw("outside", shape(element));
       relabel(element, "outside", true);
@@ -101,10 +101,16 @@
       tick.append(mark.querySelector("circle").cloneNode(), text);
       ticks.append(tick);
     }
+    entries.forEach((entry, number) => {
+      if (!faults.of(entry)) return;
+      const [x, y] = edits.spotOf(entry);
+      const mark = svg("g", { class: "fault", transform: `translate(${x} ${-y})`, "data-entry": number });
+      mark.append(svg("circle", {}), svg("text", { dy: ".35em" }, "!"));
+      ticks.append(mark);
+    });
     for (const entry of edits.gone()) {
-      const place = entry.at ?? edits.middle(entry.line ?? [entry.outline[0], entry.outline[2]]);
-      const note = svg("text", { x: place[0], y: -place[1] }, "taken back");
-      group.append(note);
+      const [x, y] = edits.spotOf(entry);
+      group.append(svg("text", { x, y: -y }, "taken back"));
     }
   }
   edits.onChange(redraw);

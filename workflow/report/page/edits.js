@@ -7,6 +7,7 @@ const edits = (() => {
   let steps = [];
   let done = 0;
   let by = "";
+  let seen; // which file of corrections this page knows
   const listeners = [];
 
   // entries never change: what was worked out of one holds
@@ -39,7 +40,7 @@ const edits = (() => {
 
   function store() {
     try {
-      localStorage.setItem(key, JSON.stringify({ given, steps, done, by }));
+      localStorage.setItem(key, JSON.stringify({ given, steps, done, by, seen }));
       return true;
     } catch {
       return false; // a browser may keep nothing for files, or be full
@@ -68,6 +69,7 @@ const edits = (() => {
     }
     if (!stored || !Array.isArray(stored.given) || !Array.isArray(stored.steps)) return "";
     by = String(stored.by ?? "");
+    seen = stored.seen;
     if (stored.given.length === given.length && stored.given.every((entry) => has(given, entry))) {
       ({ steps, done } = stored);
       return "";
@@ -91,6 +93,7 @@ const edits = (() => {
   const partOf = (element) => plan.querySelector(`.pick[data-element="${element}"], .room[data-element="${element}"]`);
   const place = ({ x, y }) => [Number(x.toFixed(3)), Number((-y).toFixed(3))];
   const middle = ([a, b]) => [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+  const spotOf = ({ at, line, outline }) => (line ? middle(line) : outline ? middle([outline[0], outline[2]]) : at);
   function lineOf(element) {
     const path = partOf(element);
     return [place(path.getPointAtLength(0)), place(path.getPointAtLength(path.getTotalLength()))];
@@ -146,8 +149,10 @@ const edits = (() => {
     return [[x - dx, y - dy], [x + dx, y + dy]].map((end) => end.map((m) => Number(m.toFixed(3))));
   }
 
-  // what others have saved since this page was made; of an element that both spoke of, what was said here stays
-  function adopt(saved) {
+  // what others have saved since; of an element that both spoke of, what was said here stays
+  function adopt(saved, revision) {
+    if (revision === seen) return; // what was taken back since is not to come again
+    know(revision);
     for (const entry of saved) {
       const other = current.find((old) => identify(old) === identify(entry));
       if (!has(current, entry) && !has(given, entry) && !(other && !has(given, other))) step(other, entry, {});
@@ -155,15 +160,20 @@ const edits = (() => {
     for (const entry of given) if (!has(saved, entry) && has(current, entry)) step(entry, null);
   }
 
+  function know(revision) {
+    seen = revision;
+    store();
+  }
+
   const news = load();
   addEventListener("storage", (event) => {
     if (event.key !== key || !event.newValue) return;
-    ({ given, steps, done, by } = JSON.parse(event.newValue));
+    ({ given, steps, done, by, seen } = JSON.parse(event.newValue));
     changed();
     planView.say("Changed in another window", 3);
   });
   return {
-    news, count, place, middle, lineOf, placeOf, partOf, nearest, distance, elementOf, entryOf, widen, change,
+    news, count, place, middle, spotOf, lineOf, placeOf, partOf, nearest, distance, elementOf, entryOf, widen, change,
     entries: () => current,
     isNew: (entry) => !has(given, entry),
     fresh: () => current.filter((entry) => !has(given, entry)),
@@ -171,7 +181,8 @@ const edits = (() => {
     add: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
     takeBack: (entry) => step(entry, null),
     bring: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
-    adopt,
+    adopt, know, tell: said,
+    has: (entry) => has(current, entry),
     undo: () => { done = Math.max(0, done - 1); store(); changed(); },
     redo: () => { done = Math.min(steps.length, done + 1); store(); changed(); },
     canUndo: () => done > 0,

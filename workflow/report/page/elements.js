@@ -63,7 +63,7 @@ const elements = (() => {
     const entry = edits.entryOf(element);
     const state = entry && edits.isNew(entry) ? [make("p", `You said: ${choices.describe(entry)}`, { class: "said" })] : [];
     const acts = make("div", "", { class: "acts" });
-    acts.append(choices.right(element, closeCard), ...choices.instead(element, closeCard), ...choices.shape(element, closeCard), ...saying.more(element, closeCard));
+    acts.append(choices.right(element, closeCard), ...choices.instead(element, closeCard), ...choices.shape(element, closeCard, edits.place(place)), ...saying.more(element, closeCard));
     const toTable = button("show in the table", () => row.scrollIntoView({ block: "center" }), { class: "plain" });
     openCard(place, title, ...flags, ...state, acts, ...choices.fields(element), facts, toTable);
   }

@@ -9,28 +9,48 @@
     told.classList.toggle("flag", isWrong);
   };
 
+  const server = {
+    async ask(what, body) {
+      const answer = await fetch(`api/${what}`, body && { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+      return { status: answer.status, ...(await answer.json()) };
+    },
+    revision: "",
+    isBroken: false, // what is saved was not carried out
+  };
+
   function list() {
     const fresh = edits.fresh();
     const gone = edits.gone();
     const item = (words, act, name) => {
-      const made = make("li", words);
-      made.append(button("×", act, { "aria-label": `${name}: ${words}` }));
+      const made = make("li");
+      made.append(make("span", words), button("×", act, { "aria-label": `${name}: ${words}` }));
+      return made;
+    };
+    // what cannot be carried out says why, and where it is
+    const said = (entry) => {
+      const words = choices.describe(entry);
+      const made = item(words, () => edits.takeBack(entry), "take back");
+      if (!faults.of(entry)) return made;
+      made.className = "fault";
+      made.firstChild.append(make("span", `Cannot be carried out: ${faults.of(entry)}`, { class: "flag" }));
+      made.firstChild.after(button("Show", () => faults.show(entry), { "aria-label": `show: ${words}` }));
       return made;
     };
     byId("fresh").replaceChildren(
-      ...fresh.map((entry) => item(choices.describe(entry), () => edits.takeBack(entry), "take back")),
+      ...fresh.map(said),
       ...gone.map((entry) => item(`Taken back: ${choices.describe(entry)}`, () => edits.bring(entry), "keep after all")),
     );
     const known = edits.entries().filter((entry) => !edits.isNew(entry));
-    byId("known").replaceChildren(...known.map((entry) => item(choices.describe(entry), () => edits.takeBack(entry), "take back")));
+    byId("known").replaceChildren(...known.map(said));
     byId("n-known").textContent = known.length;
     byId("in-plan").hidden = known.length === 0;
+    if (known.some(faults.of)) byId("in-plan").open = true;
     const n = fresh.length + gone.length;
     byId("n-fresh").textContent = n ? edits.count(n, "change") : "No changes yet";
     byId("undo").disabled = !edits.canUndo();
     byId("redo").disabled = !edits.canRedo();
     byId("download").disabled = edits.entries().length === 0;
-    byId("save").disabled = n === 0;
+    byId("save").disabled = n === 0 && !server.isBroken;
   }
   edits.onChange(list);
   byId("undo").addEventListener("click", edits.undo);
@@ -91,13 +111,6 @@
   });
 
   // --- with a server ---
-  const server = {
-    async ask(what, body) {
-      const answer = await fetch(`api/${what}`, body && { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
-      return { status: answer.status, ...(await answer.json()) };
-    },
-    revision: "",
-  };
   async function connect() {
     if (location.protocol !== "http:" || !byId("run-progress").hidden) return;
     try {
@@ -109,24 +122,27 @@
       byId("save").hidden = false;
       byId("by-hand").hidden = true;
       if (state.page !== data.made) tell("The results are newer than this page: reload it. Your changes are kept.", true);
-      edits.adopt(state.entries);
-      if (state.running) watch();
+      edits.adopt(state.entries, state.revision);
+      if (state.running || state.broken) watch();
     } catch {
       tell("The server does not answer: changes are kept in this browser.", true);
     }
   }
   byId("save").addEventListener("click", async () => {
     byId("save").disabled = true;
+    faults.clear();
+    const entries = edits.entries();
     try {
-      const answer = await server.ask("corrections", { survey: data.survey, revision: server.revision, entries: edits.entries() });
+      const answer = await server.ask("corrections", { survey: data.survey, revision: server.revision, entries });
       if (answer.status === 409 && answer.entries) {
         server.revision = answer.revision;
-        edits.adopt(answer.entries);
+        edits.adopt(answer.entries, answer.revision);
         tell(`${answer.error} Yours are kept beside them: save again.`, true);
       } else if (answer.status !== 200) {
-        tell(answer.error, true);
+        fail(answer.error, entries);
       } else {
         server.revision = answer.revision;
+        edits.know(answer.revision);
         return watch();
       }
     } catch {
@@ -134,6 +150,12 @@
     }
     list();
   });
+  // what cannot be carried out is marked; the rest waits with it, and nothing is lost
+  function fail(line, entries) {
+    const words = faults.take(line, entries);
+    tell(words === line || !words ? words : `${words}. Take it back or say it otherwise, then save again: all else is kept.`, Boolean(words));
+    edits.begin();
+  }
   async function watch() {
     const bar = byId("run-progress");
     bar.hidden = byId("run-stop").hidden = false;
@@ -141,7 +163,9 @@
     for (;;) {
       const run = await server.ask("run").catch(() => ({ error: "The server does not answer; reload later." }));
       const left = run.running && run.left_s >= 1 ? `, about ${Math.round(run.left_s)} s left` : "";
-      tell(run.error ?? `${run.line}${left}`, Boolean(run.error));
+      server.isBroken = Boolean(run.error || run.stopped);
+      if (run.error) fail(run.error, run.entries ?? []);
+      else tell(`${run.line}${left}`);
       if (run.total) { bar.max = run.total; bar.value = run.ended; }
       if (run.error || !run.running) {
         bar.hidden = byId("run-stop").hidden = true;

@@ -113,7 +113,6 @@ const solidEdits = (() => {
     layer.append(made);
     marks.push([made, new THREE.Vector3(x - scene.middle[0], y - scene.middle[1], up)]);
   }
-  const placeOf = (entry) => (entry.line ? edits.middle(entry.line) : entry.outline ? edits.middle([entry.outline[0], entry.outline[2]]) : entry.at);
   function redraw() {
     if (!scene) return;
     for (const mesh of scene.edits.children) { mesh.geometry.dispose(); mesh.material.dispose(); }
@@ -130,10 +129,10 @@ const solidEdits = (() => {
       const corners = scene.changed.get(name) ?? scene.corners.get(name);
       const up = corners ? span(corners)[1] : entry.element === "length" ? atHeight : 0;
       const isGone = entry.action === "remove" || (entry.element === "wall" && entry.kind);
-      const sign = isGone ? signs.remove : entry.element === "length" ? choices.describe(entry) : signs[entry.action] ?? "✎";
-      put(sign, isGone ? "gone" : "", placeOf(entry), up);
+      const sign = faults.of(entry) ? "!" : isGone ? signs.remove : entry.element === "length" ? choices.describe(entry) : signs[entry.action] ?? "✎";
+      put(sign, isGone || sign === "!" ? "gone" : "", edits.spotOf(entry), up);
     });
-    for (const entry of edits.gone()) put("taken back", "", placeOf(entry), 0);
+    for (const entry of edits.gone()) put("taken back", "", edits.spotOf(entry), 0);
   }
   // signs keep their size, and lie where the view has their places
   function place() {

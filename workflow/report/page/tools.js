@@ -10,10 +10,13 @@ const tools = (() => {
     return made;
   };
   const beyond = 0.45; // metres that an opening may reach beyond its wall, a little less than when it is carried out
-  const drawn = [...plan.querySelectorAll('.pick[data-element^="wall "]')].map(({ dataset }) => edits.lineOf(dataset.element));
-  let walls = drawn;
+  const drawn = [...plan.querySelectorAll('.pick[data-element^="wall "]')].map(({ dataset: { element } }) => [element, edits.lineOf(element)]);
+  let walls = []; // as they will be: what is said to be none holds no opening
   edits.onChange(() => {
-    walls = [...drawn, ...edits.fresh().filter(({ element, line }) => element === "wall" && line).map(({ line }) => line)];
+    const isLeft = (entry) => !entry || !edits.isNew(entry) || !(entry.action === "remove" || entry.kind);
+    const known = drawn.map(([element, line]) => [edits.entryOf(element), line]);
+    const made = edits.fresh().filter(({ element, action }) => element === "wall" && action === "add");
+    walls = [...known.filter(([entry]) => isLeft(entry)).map(([entry, line]) => entry?.line ?? line), ...made.map(({ line }) => line)];
   });
   const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
   const onLine = (at, [a, b], over = 0) => {
@@ -46,11 +49,11 @@ const tools = (() => {
     }
     return far(at, beside) < reach ? beside : at;
   }
-  // of two walls in a line that of both ends
+  // of the walls that an opening may begin in that of both ends
   function hostOf(...places) {
     const off = (line) => places.reduce((sum, place) => sum + edits.distance(place, line), 0);
-    const line = walls.reduce((best, each) => (off(each) < off(best) ? each : best), walls[0]);
-    return line && edits.distance(places[0], line) <= 0.5 ? line : undefined;
+    const near = walls.filter((line) => edits.distance(places[0], line) <= 0.5);
+    return near.reduce((best, each) => (off(each) < off(best) ? each : best), near[0]);
   }
 
   let tool = null; // what is drawn, what becomes of it
@@ -88,17 +91,24 @@ const tools = (() => {
   // an opening lies on its wall, everything else where it snaps to
   function settle(at) {
     const host = tool.name === "opening" && (from ? hostOf(from, at) : hostOf(at));
-    return host ? onLine(at, host, beyond) : tool.name === "tape" ? at : snapped(at, from);
+    return host ? onLine(at, host, beyond) : ["tape", "place"].includes(tool.name) ? at : snapped(at, from);
   }
   function put(at) {
     if (tool.name === "opening" && !from && !hostOf(at)) return say("An opening lies in a wall: tap on one", 3);
+    const host = tool.name === "opening" && from && hostOf(from, at);
     const place = settle(at).map((m) => Number(m.toFixed(3)));
+    // both ends lie on the wall that is nearest to both
+    if (host) from = onLine(from, host, beyond).map((m) => Number(m.toFixed(3)));
+    const { act, name } = tool;
+    if (name === "place") {
+      stop();
+      return act(place);
+    }
     if (!from) {
       from = place;
       return show(place);
     }
     if (far(from, place) < 0.05) return say(tool.name === "opening" ? "Too short: tap where it ends, on this wall" : "Too short: tap where it ends", 3);
-    const { act } = tool;
     const line = [from, place];
     stop();
     act(line);

@@ -70,22 +70,28 @@ def lay_beside(wall: Row, line_m: FloatArray) -> FloatArray:
     return start_m + reach_m[:, None] * along
 
 
-def add_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str, said: str) -> None:
-    """Add an opening in a wall where a line (2, 2) is beside it, and cut the wall's faces."""
+def make_opening(rows: PlanRows, wall: Row, line_m: FloatArray, kind: str) -> Row:
+    """Return an opening in a wall where a line (2, 2) is beside it; it is added to none."""
     ends_m = lay_beside(wall, line_m)
     left_m = max(half_m_of(wall), REACH_M) * left_normals(ends_m[None])[0]
-    opening = blank_row(schemas.OPENINGS) | end_columns(ends_m)
-    opening |= {
-        "opening": rows.next_number("opening"),
-        "wall": wall["wall"],
-        "type": kind,
-        "width_m": float(np.hypot(*(ends_m[1] - ends_m[0]))),
-        "thickness_m": wall["thickness_m"],
-        "room_a": _room_at(rows, ends_m.mean(axis=0) + left_m),
-        "room_b": _room_at(rows, ends_m.mean(axis=0) - left_m),
-        "corrected": said,
-    }
-    cut_faces(rows, wall, ends_m)
+    return (
+        blank_row(schemas.OPENINGS)
+        | end_columns(ends_m)
+        | {
+            "opening": rows.next_number("opening"),
+            "wall": wall["wall"],
+            "type": kind,
+            "width_m": float(np.hypot(*(ends_m[1] - ends_m[0]))),
+            "thickness_m": wall["thickness_m"],
+            "room_a": _room_at(rows, ends_m.mean(axis=0) + left_m),
+            "room_b": _room_at(rows, ends_m.mean(axis=0) - left_m),
+        }
+    )
+
+
+def add_opening(rows: PlanRows, wall: Row, opening: Row) -> None:
+    """Add an opening to a wall, and cut the wall's faces."""
+    cut_faces(rows, wall, ends_of(opening))
     rows.openings.append(opening)
 
 

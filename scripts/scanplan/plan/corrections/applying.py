@@ -71,14 +71,15 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
     Raises
     ------
     StageError
-        If two say something of the same element, what is added lies off the plan or its wall, or
-        nothing is left of the plan.
+        If two say something of the same element, what is added lies off the plan, or nothing is
+        left of the plan.
     """
     outcome = Outcome()
     said = [c for c in corrections if c.element not in (*POINTS, LENGTH)]
     of_rooms = [c for c in said if c.element == "room" and c.action not in (*OUTLINES, SETTLE)]
     _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
-    for correction in said:
+    # an opening may lie in a wall that is said after it
+    for correction in sorted(said, key=lambda c: c.element == "opening"):
         if correction.action == "add":
             _add(rows, correction, outcome)
     # walls are what parts them, and names are of the rooms that are left
@@ -261,20 +262,26 @@ def _add(rows: PlanRows, correction: Correction, outcome: Outcome) -> None:
         changed.set_height(rows, rows.walls[-1], correction.height_m)
         outcome.n_applied += 1
         return
+    if fault := _add_opening(rows, correction, line_m):
+        outcome.unmatched.append(f"{correction.entry}: {fault}: not applied")
+    outcome.n_applied += fault is None
+
+
+def _add_opening(rows: PlanRows, correction: Correction, line_m: FloatArray) -> str | None:
+    """Add an opening where a line (2, 2) is beside a wall; return why it was not, if so."""
     wall = added.find_host(rows.walls, line_m)
     if wall is None:
-        where = f"no wall lies within {added.REACH_M} m of the middle of its line"
-        outcome.unmatched.append(f"{correction.entry}: {where}: not applied")
-        return
+        return f"no wall lies within {added.REACH_M} m of the middle of its line"
     if fault := added.explain_misfit(wall, line_m):
         remedy = f"give a line along the wall, up to {added.REACH_M} m beyond it"
-        raise StageError(f"{correction.entry}: the line of the opening {fault}; {remedy}")
-    added.add_opening(rows, wall, line_m, correction.kind, said)
-    if fault := named.hang_leaf(rows, rows.openings[-1], correction):
-        raise StageError(f"{correction.entry}: the opening {fault}")
+        return f"the line of the opening {fault}; {remedy}"
+    opening = added.make_opening(rows, wall, line_m, correction.kind)
+    if fault := named.hang_leaf(rows, opening, correction):
+        return f"the opening {fault}"
     heights_m = {"sill_m": correction.sill_m, "lintel_m": correction.lintel_m}
-    rows.openings[-1] |= {name: of for name, of in heights_m.items() if of is not None}
-    outcome.n_applied += 1
+    opening |= {name: of for name, of in heights_m.items() if of is not None}
+    added.add_opening(rows, wall, opening | {"corrected": state_said(correction)})
+    return None
 
 
 def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> None:

@@ -1,5 +1,6 @@
 """Corrections from the report's page: saved beside the recording, and carried out by a run."""
 
+import contextlib
 import hashlib
 import json
 import os
@@ -109,6 +110,7 @@ class EditSession:
             "revision": revision,
             "page": page.get("made"),
             "running": self.run.is_running,
+            "broken": self.run.is_broken,
         }
 
     def save(self, asked: Mapping[str, Any]) -> dict[str, Any]:
@@ -164,7 +166,8 @@ class EditSession:
     def tell_run(self) -> dict[str, Any]:
         """Return how far the run is, as `ServedRun.tell` says, and what is `drawn` of the plan.
 
-        `made` says whether there is a report; `drawn` differs once there is more to be shown.
+        `made` says whether there is a report; `drawn` differs once there is more to be shown; an
+        `error` comes with the `entries` of the file that it may name.
         """
         with self._guard:
             if self.run.is_done:
@@ -172,6 +175,8 @@ class EditSession:
             said = self.run.tell()
             if self.run.is_done and not self.is_made:
                 said["error"] = f"the run has made no {self.results.name}/{PAGE}"
+            if "error" in said:
+                said["entries"] = self._list_entries()
             return said | {"made": self.is_made, "drawn": growing.stamp(self.results)}
 
     def go_on(self) -> dict[str, Any]:
@@ -239,6 +244,13 @@ class EditSession:
         corrections_file.read_corrections(found)
         entries = corrections_file.read_entries(found)
         return entries, hashlib.sha256(found.read_bytes()).hexdigest()
+
+    def _list_entries(self) -> list[Any]:
+        """Return the entries of the file as they are, none where it cannot be read."""
+        with contextlib.suppress(StageError):
+            found = corrections_file.find_beside(self.find_place())
+            return [] if found is None else corrections_file.read_entries(found)
+        return []
 
     def _begin(self) -> None:
         """Run the stages that the corrections change, or all where nothing is made yet."""
