@@ -26,7 +26,9 @@ from scanplan.lab.evaluation.scores import score_files
 
 _MINUTES = 10
 _NEARER = float(np.exp(1))  # by one turn of the wheel, as the page has it
+_ALONG = (0.5, 0.3, 0.7, 0.1, 0.9)  # shares of a line
 _SIDES_M = 0.6  # from one side of a wall to the other
+_OFF_M = 0.3  # of a line's end: the page draws it where it went
 _LEAST_M = 0.5  # of a wall or an opening that somebody would notice is not drawn
 _PATIENCE_S = 900  # of a run that makes a plan anew
 _UNFIT = "#corrections li.fault"  # what cannot be carried out
@@ -142,6 +144,8 @@ class Known:
         verdict = self.elements.get((kind, int(number)), ("", None))[0]
         if verdict in ("right", "not_entered"):
             return "keep"
+        if verdict == "unknown":
+            return None
         if kind == "opening" and verdict and self.openings:
             axis = shapely.from_wkb(self.elements[kind, int(number)][1])
             half_m = axis.length / 2
@@ -237,16 +241,16 @@ def open_card(hand, element, at_m):
 
 
 def mend_unasked(hand, known):
-    """Correct walls that are none, and that nobody asked for."""
+    """Correct walls and openings that are none, or others, and that nobody asked for."""
     answered = "edits.entries().map(e => edits.elementOf(e))"
-    for (kind, number), (verdict, _) in known.elements.items():
+    for kind, number in known.elements:
         element = f"{kind} {number}"
-        if kind != "wall" or verdict == "right" or element in hand.page.run(answered):
+        right = known.judge(element) if kind in ("wall", "opening") else None
+        if right in (None, "keep") or element in hand.page.run(answered):
             continue
-        right = known.judge(element)
         at_m = hand.page.run(f"edits.placeOf('{element}')")
         hand.think()
-        if right and open_card(hand, element, at_m):
+        if open_card(hand, element, at_m):
             _correct(hand, element, right, "#card")
 
 
@@ -255,8 +259,9 @@ def part_and_join(hand, said):
     page = hand.page
     room_at = "edits.nearest('room', [{}, {}]) ?? ''"
     for start, end in said.get("parted", []):
-        middle = np.mean([start, end], axis=0)
-        room = page.run(room_at.format(*middle))
+        # something may stand where the line's middle is
+        along = [np.add(start, share * np.subtract(end, start)) for share in _ALONG]
+        room = next(filter(None, (page.run(room_at.format(*place)) for place in along)), "")
         hand.think()
         if room and open_card(hand, room, page.run(f"edits.placeOf('{room}')")):
             hand.press("Two rooms: draw the line", "#card")
@@ -272,9 +277,13 @@ def part_and_join(hand, said):
 
 def draw_missing(hand, known, most_s):
     """Draw what is missing until the time is over."""
+    parted = [of["line"] for of in hand.page.run("edits.entries()") if of.get("action") == "split"]
+    grounds = [shapely.LineString(line_m).buffer(_SIDES_M) for line_m in parted]
     for table, kind, line_m in known.missing:
         if hand.seconds > most_s:
             return
+        if any(ground.covers(shapely.LineString(line_m)) for ground in grounds):
+            continue  # a line that parts two rooms is a passage
         hand.think()
         hand.come_near(line_m)
         hand.press("Draw")
@@ -282,9 +291,19 @@ def draw_missing(hand, known, most_s):
         before = hand.page.run("edits.entries().length")
         hand.tap(*line_m[0])
         hand.tap(*line_m[1])
-        if hand.page.run("edits.entries().length") == before:
+        drawn = hand.page.run("edits.entries()")
+        if len(drawn) == before:
             hand.key("Escape")
+        elif not _is_as_meant(drawn[-1]["line"], line_m):
+            hand.think()
+            hand.press("Undo", "#corrections")
         hand.press("Fit")
+
+
+def _is_as_meant(drawn_m, line_m):
+    """Whether a line went where it was meant to go, and not to another wall."""
+    off_m = min(np.abs(np.subtract(drawn_m, ends)).max() for ends in (line_m, line_m[::-1]))
+    return off_m <= _OFF_M
 
 
 def save(hand):
@@ -337,16 +356,15 @@ def served(results):
     root = Path(__file__).resolve().parents[2]
     main = "import sys; from scanplan.project.run import command; sys.exit(command.main())"
     command = [sys.executable, "-c", main, "open", str(results)]
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [*command, "--no-browser"], stdout=subprocess.PIPE, text=True, cwd=results.parents[1],
         env={**os.environ, "PYTHONPATH": str(root / "scripts")},
-    )  # fmt: skip
-    try:
-        assert process.stdout is not None
-        yield process.stdout.readline().split()[-1]
-    finally:
-        process.terminate()
-        process.wait()
+    ) as process:  # fmt: skip
+        try:
+            assert process.stdout is not None
+            yield process.stdout.readline().split()[-1]
+        finally:
+            process.terminate()
 
 
 def score_corrected(placed):
@@ -381,7 +399,7 @@ class Walked:
     unfit: list
 
 
-def walk_floor(results, truth=None):
+def walk_floor(results, truth=None, *, minutes=_MINUTES):
     """Mend the plan of results, uncorrected yet, on their page; the corrections stay.
 
     Parameters
@@ -390,6 +408,8 @@ def walk_floor(results, truth=None):
         A folder below results/.
     truth : path-like, optional
         See `place_floor`.
+    minutes : float, optional
+        Of a person's time, after which nothing more is drawn.
     """
     if (results / "plan/corrected").exists():
         sys.exit(f"{results}: is corrected already; remove its corrections and run it again")
@@ -397,12 +417,12 @@ def walk_floor(results, truth=None):
     before = score_files.score_results(placed)
     known = read_known(placed, before)
     with served(results) as address:
-        entries, hand, (machine_s, unfit) = _mend(address, results.name, known)
+        entries, hand, (machine_s, unfit) = _mend(address, results.name, known, minutes)
     after = score_corrected(placed)
     return Walked(before.measures, after.measures, entries, hand.acts, machine_s, unfit)
 
 
-def _mend(address, name, known):
+def _mend(address, name, known, minutes):
     with (
         tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder,
         browser.Page(folder) as page,
@@ -416,7 +436,7 @@ def _mend(address, name, known):
         walk(hand, known)
         mend_unasked(hand, known)
         part_and_join(hand, SAID.get(name, {}))
-        draw_missing(hand, known, 60 * _MINUTES)
+        draw_missing(hand, known, 60 * minutes)
         entries = page.run("edits.entries()")
         return entries, hand, save(hand)
 

@@ -146,6 +146,28 @@ def test_on_a_phone_question_and_answers_are_in_view(page, report):
     assert page.run("document.documentElement.scrollWidth") <= PHONE["width"]
 
 
+@pytest.mark.parametrize("view", ["the plan", "in space"])
+def test_on_a_phone_plan_and_buttons_are_on_the_first_screen(page, report, view):
+    page.open(report.as_uri(), **PHONE)
+    # as many files as a whole run makes
+    page.run(
+        "(nav => { for (let i = 0; i < 30; i++)"
+        " nav.append(nav.querySelector('a').cloneNode(true)); })(document.getElementById('files'))"
+    )
+    if view == "in space":
+        needs_webgl(page)
+        page.run("solid.show()")
+    box = "document.querySelector('{}').getBoundingClientRect()"
+    assert page.run(f"{box.format('#view')}.bottom") <= PHONE["height"]
+    assert page.run("document.documentElement.scrollWidth") <= PHONE["width"]
+    rows = page.run("new Set([...document.querySelectorAll('#zoom button')]"
+                    ".map(b => b.getBoundingClientRect().top)).size")  # fmt: skip
+    assert rows == 1
+    cut = page.run("[...document.querySelectorAll('#zoom button')]"
+                   ".filter(b => b.scrollWidth > b.clientWidth).map(b => b.innerText)")  # fmt: skip
+    assert cut == []
+
+
 def test_sixty_changes_stay_quick(page):
     took_ms = page.run(
         "(() => { const start = performance.now();"
@@ -167,6 +189,8 @@ STATES = {
     "as it opens": "null",
     "a card": "elements.showElement('opening 1')",
     "changes": "edits.change('wall 2', {action: 'remove'}), edits.change('wall 3', {name: 'x'})",
+    "what cannot be carried out": "edits.change('wall 2', {action: 'remove'}),"
+    " faults.take('entry 1: goes beyond its wall', edits.entries()), edits.begin()",
     "a question": "document.querySelector('#answers button').click()",
     "a menu": "document.querySelector('#layers').open = true",
     "a line that is drawn": "document.querySelector('#draw [data-kind=wall]').click()",
@@ -304,7 +328,8 @@ def test_a_change_is_the_same_in_space_and_on_the_plan(page):
     page.run("elements.closeCard()")
     # what was chosen is looked at: it is in the middle
     click(page, middle_of(page, "#space"))
-    assert text_of(page, "#card h2") == "New wall" and page.run("solid.scene().picked.visible")
+    assert text_of(page, "#card h2").startswith("New wall of 2.00 m")
+    assert page.run("solid.scene().picked.visible")
     assert page.run("document.querySelector('#edits .picked').dataset.entry") == "0"
     press(page, "Take it back", "#card")
     assert entries(page) == [] and not page.run("solid.scene().picked.visible")

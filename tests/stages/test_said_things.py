@@ -117,6 +117,34 @@ def test_a_room_that_goes_around_something_is_parted_by_two_lines(plan):
     assert "does not part the room" in told
 
 
+def test_a_line_with_a_pillar_at_its_middle_is_carried_out_with_the_other(plan):
+    core, pillar = shapely.box(1.5, 1, 2.5, 2), shapely.box(0.6, 1.3, 0.9, 1.5)
+    ring = shapely.box(0, 0, 4, 3).difference(shapely.union(core, pillar))
+    rooms = floorplan_making.rooms([ring, floorplan_making.ROOMS[1]])
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    west = {"element": "room", "action": "split", "line": [[0, 1.4], [1.5, 1.4]]}
+    east = {"element": "room", "action": "split", "line": [[2.5, 1.5], [4, 1.5]]}
+    found = corrected(plan, west, east)
+    assert list(found.unmatched_corrections) == [] and found.n_corrections == 2
+    # west of the pillar, between it and the core, and in the east
+    assert sorted(found.openings["width_m"][found.openings["wall"] == -1].round(2)) == [
+        0.6, 0.6, 1.5]  # fmt: skip
+    # the next line does not find what waited before
+    again = {"element": "room", "action": "split", "line": [[2, 2], [2, 3]]}
+    assert len(corrected(plan, west, east, again).rooms["room"]) == 4
+
+
+def test_a_niche_that_a_line_cuts_off_goes_with_its_room(plan):
+    # a niche of 0.1 m2 in the south wall, which the line runs along the mouth of
+    shape = shapely.union(shapely.box(0, 0, 4, 3), shapely.box(1, -0.2, 1.5, 0))
+    rooms = floorplan_making.rooms([shape, floorplan_making.ROOMS[1]])
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    line = [[0, 1.0], [1.6, -0.2]]
+    found = corrected(plan, {"element": "room", "action": "split", "line": line})
+    assert list(found.unmatched_corrections) == [] and len(found.rooms["room"]) == 3
+    assert (found.openings["wall"] == -1).sum() == 1
+
+
 def test_a_line_that_passes_a_corner_parts_a_room(plan):
     # an L: its line runs a hair above the corner, and on below the bar
     shape = shapely.Polygon([(0, 0), (4, 0), (4, 3), (2, 3), (2, 1), (0, 1)])

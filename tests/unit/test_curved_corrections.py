@@ -38,8 +38,7 @@ def test_an_opening_that_a_person_adds_lies_on_the_arc():
     along = np.sqrt(0.5) * np.array([-1.0, 1.0])
     line_m = np.stack([MIDDLE_M - 0.5 * along, MIDDLE_M + 0.5 * along])
     assert added.explain_misfit(wall, line_m) is None
-    added.add_opening(plan_rows, wall, line_m, "door", "added")
-    opening = plan_rows.openings[-1]
+    opening = added.make_opening(plan_rows, wall, line_m, "door")
     ends_m = np.array([[opening["x0_m"], opening["y0_m"]], [opening["x1_m"], opening["y1_m"]]])
     assert opening["width_m"] == pytest.approx(1.0, abs=0.01)
     assert np.hypot(*ends_m.T) == pytest.approx(RADIUS_M, abs=0.05)

@@ -122,7 +122,7 @@ const solidEdits = (() => {
     layer.replaceChildren();
     marks = [];
     edits.entries().forEach((entry, number) => {
-      if (!edits.isNew(entry)) return;
+      if (!edits.isNew(entry)) return void (faults.of(entry) && put("!", "gone", edits.spotOf(entry), scene.height));
       const element = edits.elementOf(entry);
       const name = element ?? `entry ${number}`;
       bodies[entry.element]?.(entry, element, name);

@@ -7,7 +7,6 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan import floorplan
 from scanplan.plan.corrections import added, changed, named, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
@@ -27,7 +26,6 @@ SAID = {
 _TAPE_M = 0.005
 """ASSUME of a taped length without a standard deviation: what a tape sags, and its ends are off."""
 
-_ON_LINE_M = 0.01  # what rounding leaves between a line and the passage that it became
 _DAY = 10  # characters of a moment: its year, month and day
 _FARTHEST_M = 100.0
 """From the plan to a wall that is added: a part of the building that no scan shows is nearer."""
@@ -199,14 +197,17 @@ def _draw_outline(
 ) -> None:
     """Part a room, or join two; a line that parts none waits for one with which it does."""
     if correction.action == "split":
-        waiting_m = [np.array(other.line_m) for other in pending]
         line_m = np.array(correction.line_m)
-        fault = outlines.split_room(rows, line_m, state_said(correction), waiting_m)
+        room = outlines.find_parted(rows, line_m)
+        lines_m = [np.array(other.line_m) for other in pending]
+        is_of_it = [outlines.find_parted(rows, other) is room for other in lines_m]
+        others_m = [other for other, is_in in zip(lines_m, is_of_it, strict=True) if is_in]
+        fault = outlines.split_room(rows, line_m, state_said(correction), others_m)
         if fault is None:
-            n_waiting = len(pending)
-            pending[:] = [other for other in pending if not _is_drawn(rows, other)]
-            outcome.n_applied += n_waiting - len(pending)
-        elif outlines.find_parted(rows, line_m) is not None:
+            # with it those are drawn that waited
+            pending[:] = [c for c, is_in in zip(pending, is_of_it, strict=True) if not is_in]
+            outcome.n_applied += len(others_m)
+        elif room is not None:
             pending.append(correction)
             return
     else:
@@ -215,13 +216,6 @@ def _draw_outline(
     outcome.n_applied += fault is None
     if fault:
         outcome.unmatched.append(_tell_outline(correction, fault))
-
-
-def _is_drawn(rows: PlanRows, split: Correction) -> bool:
-    """Return whether a line that parts a room is a passage of the plan."""
-    middle = shapely.Point(split.at_m)
-    passages = [row for row in rows.openings if row["wall"] < 0]
-    return any(floorplan.draw_axis(row).distance(middle) < _ON_LINE_M for row in passages)
 
 
 def _tell_outline(correction: Correction, fault: str) -> str:

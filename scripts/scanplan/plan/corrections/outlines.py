@@ -31,7 +31,7 @@ def split_room(
 
     The line is made longer by `added.REACH_M` at both ends, as far as the room goes. It becomes a
     passage in no wall. A room that goes around something is parted by two lines or more: `others_m`
-    are those that did not part one alone.
+    are those that did not part it alone.
 
     Returns
     -------
@@ -42,17 +42,16 @@ def split_room(
     if room is None:
         return "lies in no room"
     outline = shapely.from_wkb(room["geometry"])
-    inside = [other for other in others_m if find_parted(rows, other) is room]
     cuts: list[shapely.LineString] = []
     parts: list[shapely.Polygon] = []
     # one line makes two rooms, several may make more
-    most = 2 + len(inside)
+    most = 2 + len(others_m)
     # a line that passes a corner, made longer, ends in the open
     for draw in (_cut_through, _snap_to):
         if not 2 <= len(parts) <= most:
-            cuts = [cut for other in (line_m, *inside) for cut in draw(outline, other)]
-            parts = _join_slivers(_part(outline, cuts)) if inside else _part(outline, cuts)
-    if not 2 <= len(parts) <= most or parts[-1].area < _SMALLEST_M2:
+            cuts = [cut for other in (line_m, *others_m) for cut in draw(outline, other)]
+            parts = _join_slivers(_part(outline, cuts))
+    if not 2 <= len(parts) <= most:
         return "does not part the room from wall to wall"
     number, first = room["room"], rows.next_number("room")
     numbers = [number, *range(first, first + len(parts) - 1)]
@@ -63,13 +62,16 @@ def split_room(
     shapes = np.array(parts, object)
     for opening in rows.openings:
         place = shapely.Point(added.ends_of(opening).mean(axis=0))
-        nearest = numbers[int(np.argmin(shapely.distance(shapes, place)))]
+        beside = numbers[int(np.argmin(shapely.distance(shapes, place)))]
         for side in ("room_a", "room_b"):
-            opening[side] = nearest if opening[side] == number else opening[side]
+            opening[side] = beside if opening[side] == number else opening[side]
     for cut in cuts:
         ends_m = shapely.get_coordinates(cut)[[0, -1]]
         far_m = shapely.distance(shapes, cut.interpolate(0.5, normalized=True))
-        sides = [numbers[row] for row in np.argsort(far_m, kind="stable")[:2].tolist()]
+        nearest = np.argsort(far_m, kind="stable")[:2]
+        if far_m[nearest[1]] > _SLACK_M:
+            continue  # it cuts a niche off that goes with its room
+        sides = [numbers[row] for row in nearest.tolist()]
         passage = {"opening": rows.next_number("opening"), "wall": -1, "type": "passage"}
         passage |= dict(zip(("room_a", "room_b"), sorted(sides), strict=True))
         passage |= {"thickness_m": np.nan, "corrected": said}
