@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
@@ -43,11 +44,14 @@ class Nods(NamedTuple):
         The sweeps of each nod.
     mount_from_laser : (n, 4, 4) float64
         At each sweep; NaN where it is not known.
+    axis : (3,) float64
+        That it turns about, on what it is on.
     """
 
     n_edges: int
     sweeps: list[IntArray]
     mount_from_laser: FloatArray
+    axis: FloatArray
 
 
 def take_nods(survey: BagSurvey) -> Survey:
@@ -79,16 +83,18 @@ def find_nods(edges: Sequence[FrameEdge], t_ns: IntArray) -> Nods | None:
     known = np.flatnonzero(covered)
     if len(known) < 3 or np.ptp(pose[known, :3, 3], axis=0).max() > _MOST_REACH_M:
         return None
-    angle_rad = _follow_angle(pose[known, :3, :3])
+    angle_rad, axis = _follow_angle(pose[known, :3, :3])
     swing_rad = float(np.ptp(np.quantile(angle_rad, _USUAL)))
     if swing_rad < _LEAST_SWING:
         return None
     sweeps: list[IntArray] = [known[begin:end] for begin, end in part_nods(angle_rad, swing_rad)]
-    return Nods(len(mount), sweeps, pose) if sweeps else None
+    return Nods(len(mount), sweeps, pose, axis) if sweeps else None
 
 
-def _follow_angle(turn: FloatArray) -> FloatArray:
-    """Return the angle (n,) about the axis that a mount turns about; zero if it is the laser's own.
+def _follow_angle(turn: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the angle (n,) about the axis (3,) that a mount turns about, and this axis.
+
+    The angle is zero if it is the laser's own.
 
     Parameters
     ----------
@@ -100,11 +106,13 @@ def _follow_angle(turn: FloatArray) -> FloatArray:
     skew = np.stack([step[:, 2, 1], step[:, 0, 2], step[:, 1, 0]], axis=1)
     skew -= np.stack([step[:, 1, 2], step[:, 2, 0], step[:, 0, 1]], axis=1)
     axis = np.linalg.eigh(skew.T @ skew)[1][:, -1]
+    on_mount = (turn @ axis).mean(axis=0)
+    on_mount /= np.linalg.norm(on_mount)
     if abs(axis[2]) > _MOST_ALONG:
-        return np.zeros(len(turn))
+        return np.zeros(len(turn)), on_mount
     along = skew @ axis / 2
     angle_rad = np.arctan2(along, (np.trace(step, axis1=1, axis2=2) - 1) / 2)
-    return np.concatenate([[0.0], np.cumsum(angle_rad)])
+    return np.concatenate([[0.0], np.cumsum(angle_rad)]), on_mount
 
 
 def part_nods(angle_rad: FloatArray, swing_rad: float) -> list[tuple[int, int]]:
@@ -132,6 +140,9 @@ def part_nods(angle_rad: FloatArray, swing_rad: float) -> list[tuple[int, int]]:
 class NoddingSweeps(TakenAtOnce, OfSurvey):
     """The nods of a laser; each is one scan, seen from where the laser is on the mount in the mean.
 
+    The z axis of that place is what the mount turns about, as a scanner's is what its beams turn
+    about: how many rays are sent up and down says nothing of a mount that nods.
+
     Parameters
     ----------
     survey : recorded_survey.BagSurvey
@@ -144,6 +155,7 @@ class NoddingSweeps(TakenAtOnce, OfSurvey):
         # the sweep at which a mount turns back is of two nods
         used = np.unique(np.concatenate(nods.sweeps))
         self._mean = np.eye(4)
+        self._mean[:3, :3] = Rotation.align_vectors(nods.axis, [0, 0, 1])[0].as_matrix()
         self._mean[:3, 3] = nods.mount_from_laser[used, :3, 3].mean(axis=0)
         log.log_line(
             f"{survey.list_topics().cloud}: the mount of the laser nods or turns, by tf: of"
