@@ -15,6 +15,7 @@ from scanplan.recordings.motion import (
     pose_kind,
     time_check,
     trajectory,
+    turn_smear,
 )
 from scanplan.recordings.survey import open_survey
 from scanplan.recordings.survey_protocol import Survey
@@ -87,6 +88,7 @@ def interpolate_poses(
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = _shift_motion(survey, motion, delay_s, limits)
             motion = time_check.check_point_times(survey, motion)
+            measured.append(turn_smear.measure_smear(survey, motion))
             notes = {schemas.OF_POSES: json.dumps(motion.of_poses)}
             tables.write_table(
                 moved, schemas.MOTION, motion.columns(), notes=notes, made_of=made_of

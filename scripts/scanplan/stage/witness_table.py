@@ -105,6 +105,19 @@ WITNESSES = {
         "the clocks of their computers differ, or what makes poses takes so long",
         "set both clocks, and stamp poses by the scans that they are made of",
     ),
+    # 3.9 mm in 16 sound surveys, 11 in one whose scanner hangs upside down; of points that are left
+    # as recorded, 9 to 28 in eleven
+    "smeared turns": Witness(
+        12.0,
+        "{:.0f} mm",
+        CAUSE,
+        SKETCH,
+        "scans are smeared where the sensor turns",
+        "surfaces are {value} thicker where the sensor turns than where it does not",
+        "points carry no times, or none of a sweep, and a scan cannot be freed of the motion during"
+        " it",
+        "record points with their times (a setting or field of the driver's), or turn slowly",
+    ),
     # parts of a bag that was split follow one another within a day
     "days apart": Witness(
         0,

@@ -83,7 +83,7 @@ def _read_windows(survey: Survey, windows: Sequence[IntArray]) -> list[list[Scan
     """Return the scans of each window that have points and times, thinned."""
     wanted = np.concatenate(windows).tolist() if windows else []
     scans = {
-        scan.scan_id: _thin_scan(scan) for scan in survey.scans(wanted) if scan.time_s is not None
+        scan.scan_id: thin_scan(scan) for scan in survey.scans(wanted) if scan.time_s is not None
     }
     filled = {scan_id: scan for scan_id, scan in scans.items() if len(scan.xyz_m)}
     return [[filled[i] for i in window.tolist() if i in filled] for window in windows]
@@ -103,11 +103,8 @@ def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArra
         Indices of the scans of each window, at most `_MOST`, which are within one piece
         of the motion.
     """
-    ends = np.searchsorted(t_ns, t_ns + int(_WINDOW_S * 1e9))
-    step = max(1, int(np.median(ends - np.arange(len(t_ns)))) // 2)
     windows = []
-    for start in range(0, len(t_ns), step):
-        window = np.arange(start, ends[start])
+    for window in list_windows(t_ns):
         effect_rad = _turning_effect_rad(t_ns[window], motion)
         if effect_rad >= _LEAST_EFFECT_RAD:
             windows.append((effect_rad, window))
@@ -116,7 +113,20 @@ def choose_turning_windows(t_ns: IntArray, motion: SensorMotion) -> list[IntArra
     for rank, (_, window) in enumerate(windows):
         if not any(_overlap(window, better) for _, better in windows[:rank]):
             apart.append(window)
-    return [_spread_scans(window) for window in apart[:_MOST]]
+    return [spread_scans(window) for window in apart[:_MOST]]
+
+
+def list_windows(t_ns: IntArray) -> list[IntArray]:
+    """Return the scans of windows of some seconds, each of which begins in the middle of another.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64
+        Stamps of the scans.
+    """
+    ends = np.searchsorted(t_ns, t_ns + int(_WINDOW_S * 1e9))
+    step = max(1, int(np.median(ends - np.arange(len(t_ns)))) // 2)
+    return [np.arange(start, ends[start]) for start in range(0, len(t_ns), step)]
 
 
 def _turning_effect_rad(t_ns: IntArray, motion: SensorMotion) -> float:
@@ -143,7 +153,8 @@ def _overlap(one: IntArray, other: IntArray) -> bool:
     return bool(one[0] <= other[-1] and other[0] <= one[-1])
 
 
-def _spread_scans(window: IntArray) -> IntArray:
+def spread_scans(window: IntArray) -> IntArray:
+    """Return at most `_MOST` scans of a window (n,), evenly."""
     n = min(len(window), _MOST)
     return window[np.linspace(0, len(window) - 1, n).astype(int)]
 
@@ -222,7 +233,7 @@ def _measure_scatters(
     """
     maps = []
     for reading in readings:
-        merged = _merge_scans(group, reading.apply_to(motion))
+        merged = merge_scans(group, reading.apply_to(motion))
         if merged is None:
             return np.empty((len(readings), 0))
         maps.append(merged)
@@ -241,7 +252,7 @@ def _measure_scatters(
     return np.array([scatter.sigma_m for scatter in scatters])
 
 
-def _merge_scans(group: Sequence[Scan], motion: SensorMotion) -> FloatArray | None:
+def merge_scans(group: Sequence[Scan], motion: SensorMotion) -> FloatArray | None:
     """Return the deskewed points of all scans in one frame, or None where the motion has gaps."""
     parts = []
     for scan in group:
@@ -253,7 +264,7 @@ def _merge_scans(group: Sequence[Scan], motion: SensorMotion) -> FloatArray | No
     return np.concatenate(parts)
 
 
-def _thin_scan(scan: Scan) -> Scan:
+def thin_scan(scan: Scan) -> Scan:
     """Return the scan with a random share of its points."""
     rng = np.random.default_rng([_SEED, scan.scan_id])
     n_points = len(scan.xyz_m)
