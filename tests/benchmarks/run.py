@@ -18,6 +18,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py odometry FOLDER [DRIVE ...]
        run.py overlays [COUNT [FIRST SEED]]
        run.py edits RESULTS TRUTH FOLDER
+       run.py stations FOLDER [COUNT ...]
        run.py growth FOLDER [scans | rooms | extent | glass | TIMES ...]
        run.py realistic FOLDER [REVISION] [HALF | KIND | subset | FLOOR | KEY=VALUE ...]
        run.py compare_realistic SCORES SCORES
@@ -52,6 +53,9 @@ package, with a reliability diagram in FOLDER.
 `growth` runs the default target on drives that are 1, 2, 4 and 8 times as long, as many rooms or
 as wide (or as many TIMES as are said), and on a hall of glass with and without ground around it,
 and prints what every stage takes of each.
+
+`stations` reads 10, 20 and 30 stations (or as many as are said) of 5 million points from one E57
+file, and plans an office as stations and as a merged cloud, with scores by what is true of it.
 
 `realistic` makes the plans of 84 drives through 42 buildings drawn from seeds, and of real floors
 with a truth, by the code of a commit, and scores them in the terms of the field: tables of measures
@@ -303,6 +307,14 @@ def bench_growth(folder: str, *words: str) -> None:
     growth_bench.bench(ROOT, kept, times or (1, 2, 4, 8), series or growth_bench.SERIES)
 
 
+def bench_stations(folder: str, *counts: str) -> None:
+    """Stations of a terrestrial scanner: reading, and plans of them and of a merged cloud."""
+    import stations_bench
+
+    numbers = [int(count) for count in counts] or [10, 20, 30]
+    stations_bench.bench(ROOT, SETTINGS, Path(folder).resolve(), numbers)
+
+
 def bench_realistic(folder: str, revision: str = "HEAD", *words: str) -> None:
     """Plans of realistic buildings and real floors against what is true of them."""
     import realistic
@@ -334,6 +346,7 @@ APART: dict[str, Callable[..., None]] = {
     "overlays": bench_overlays,
     "walk": bench_walk,
     "growth": bench_growth,
+    "stations": bench_stations,
     "pipeline": bench_pipeline,
     "changes": bench_changes,
     "design": bench_design,
