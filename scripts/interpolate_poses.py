@@ -88,8 +88,10 @@ def interpolate_poses(
             motion = trajectory.choose_motion(survey.motion_chains(), t_ns, **limits)
             motion = _shift_motion(survey, motion, delay_s, limits)
             motion = time_check.check_point_times(survey, motion)
-            measured.append(turn_smear.measure_smear(survey, motion))
-            notes = {schemas.OF_POSES: json.dumps(motion.of_poses)}
+            notes = {
+                schemas.OF_POSES: json.dumps(motion.of_poses),
+                schemas.SMEAR_MM: str(turn_smear.measure_smear_mm(survey, motion)),
+            }
             tables.write_table(
                 moved, schemas.MOTION, motion.columns(), notes=notes, made_of=made_of
             )

@@ -98,8 +98,10 @@ def register_scans(
         measured.append(contradictions.measure_repeats(found.n_repeated, len(survey.scan_ids)))
         some = contradictions.choose_some(kept)
         measured.append(contradictions.measure_ranges(found.read_points(some)))
-        # scans that were misread say nothing of the map
-        measured += [] if misfit.name == "misread" else placed.witnesses
+        # scans that were misread say nothing of the map, nor of turns
+        if misfit.name != "misread":
+            measured += placed.witnesses
+            measured += [] if moved is None else [registered_candidates.read_smear(moved)]
         _write_kept_scans(scans, survey, verdicts, kept, found.read_points(kept))
     spoken = witnesses.tell("register_scans", measured)
     log.log_line(

@@ -155,3 +155,31 @@ def test_a_laser_on_a_mount_that_nods(tmp_path, bag_plan):
 def test_a_grid_map_to_half_a_cell(tmp_path, bag_plan):
     plan = small_flat.plan_of(tmp_path / "plan", small_flat.write_grid_map(tmp_path / "flat"))
     small_flat.assert_same_plan(plan, bag_plan, wall_m=0.03, door_m=0.06)
+
+
+@pytest.mark.parametrize(("is_mirrored", "witness"), [(False, "smeared turns"), (True, "misread")])
+def test_turns_that_smear_scans_without_times_are_told(tmp_path, is_mirrored, witness):
+    """A laser in a corner of 6 m x 4 m that looks ahead for 12 s, and then turns.
+
+    Where its clouds are mirrored they lie askew in turns whatever their times.
+    """
+    maker, beam_rad = bag_making.Maker(), (np.arange(360) + 0.5) * np.radians(1)
+    entries = []
+    for row in range(240):
+        t_s, t_ns = row / 10, bag_making.START_NS + row * 10**8
+        heading = 1.2 * max(t_s - 12, 0)
+        towards = heading + beam_rad * (1 + (t_s > 12) * 1.2 * 0.1 / (2 * np.pi))
+        ahead, aside = np.cos(towards), np.sin(towards)
+        range_m = np.minimum(
+            np.where(ahead > 0, 4.5, 1.5) / np.abs(ahead), np.where(aside > 0, 3, 1) / np.abs(aside)
+        )
+        quat = (0, 0, np.sin(heading / 2), np.cos(heading / 2))
+        range_m = range_m[::-1] if is_mirrored else range_m
+        range_m = range_m + np.random.default_rng(row).normal(0, 0.004, len(range_m))
+        scan = maker.laser(t_ns, range_m, angle_min=beam_rad[0], scan_time=0.0)
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, (0, 0, 0), quat)))
+        entries.append(("/scan", t_ns, scan))
+    maker.write(tmp_path / "run", entries)
+    small_flat.plan_of(tmp_path / "plan", dataset_files.find_files(tmp_path))
+    told = doubts.read_doubts(tmp_path / "plan/registration.parquet", schemas.REGISTRATION)
+    assert [found.witness for found in told.findings] == [witness]

@@ -200,23 +200,3 @@ def test_recordings_that_lie_days_apart_are_told(tmp_path, caplog, apart_s, is_t
     assert len(told) == is_told
     if told:
         assert "y/y.bag begins 1.0 days after" in told[0] and "x/x.bag: they" in told[0]
-
-
-def test_turns_that_smear_scans_without_times_are_told(tmp_path):
-    """A laser in the middle of 6 m x 4 m that looks ahead for 12 s, and then turns."""
-    maker, beam_rad = bag_making.Maker(), (np.arange(360) + 0.5) * np.radians(1)
-    entries = []
-    for t_s in np.arange(0, 24, 0.1).tolist():
-        t_ns = START + round(t_s * 1e9)
-        heading = 1.2 * max(t_s - 12, 0)
-        towards = beam_rad + heading + 1.2 * 0.1 * beam_rad / (2 * np.pi) * (t_s > 12)
-        range_m = np.minimum(3 / np.abs(np.cos(towards)), 2 / np.abs(np.sin(towards)))
-        quat = (0, 0, np.sin(heading / 2), np.cos(heading / 2))
-        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, (0, 0, 0), quat)))
-        scan = maker.laser(t_ns, range_m, angle_min=beam_rad[0], scan_time=0.0)
-        entries.append(("/scan", t_ns, scan))
-    maker.write(tmp_path / "run", entries)
-    output, moved = tmp_path / "poses.parquet", tmp_path / "motion.parquet"
-    interpolate_poses(dataset_files.find_files(tmp_path), output, moved=moved, **SETTINGS)
-    (told,) = doubts.read_doubts(output, schemas.POSES).findings
-    assert told.witness == "smeared turns"

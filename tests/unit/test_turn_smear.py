@@ -9,7 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from scanplan.recordings import clouds
 from scanplan.recordings.motion import pose_kind, trajectory, turn_smear
+from scanplan.stage.witness_table import WITNESSES
 
+MOST_MM = WITNESSES["smeared turns"].limit
 T_NS, SWEEP_S, CALM_S, WHOLE_S = 1_700_000_000_000_000_000, 0.1, 12.0, 24.0
 BEAM_RAD = np.arange(360) * np.radians(1)
 BEAM_S = np.arange(360) / 360 * SWEEP_S
@@ -51,16 +53,14 @@ def make_survey(beam_s, kind=pose_kind.LOCALISER, sweep_times=None):
     )
 
 
-def test_what_turns_smear_is_told():
-    witness = turn_smear.measure_smear(make_survey(BEAM_S), make_motion())
+def test_what_turns_smear_is_thicker_there():
     # a sweep turns by 7 degrees: what is seen askew 3 m away moves by up to 0.3 m
-    assert witness.name == "smeared turns" and witness.is_beyond
-    assert "times" in witness.finding.remedy
+    assert turn_smear.measure_smear_mm(make_survey(BEAM_S), make_motion()) > MOST_MM
 
 
 def test_what_was_seen_at_once_is_as_thin_in_turns():
-    witness = turn_smear.measure_smear(make_survey(0 * BEAM_S), make_motion())
-    assert witness.value == pytest.approx(0, abs=2)
+    smear_mm = turn_smear.measure_smear_mm(make_survey(0 * BEAM_S), make_motion())
+    assert smear_mm == pytest.approx(0, abs=2)
 
 
 @pytest.mark.parametrize(
@@ -72,16 +72,15 @@ def test_what_was_seen_at_once_is_as_thin_in_turns():
     ],
 )
 def test_of_poses_that_drift_and_of_points_with_times_it_is_not_asked(known):
-    witness = turn_smear.measure_smear(known, make_motion())
-    assert np.isnan(witness.value) and not witness.is_beyond
+    assert np.isnan(turn_smear.measure_smear_mm(known, make_motion()))
 
 
 def test_times_that_fit_no_sweep_are_none():
     survey = make_survey(BEAM_S, sweep_times="s since the stamp")
-    witness = turn_smear.measure_smear(survey, replace(make_motion(), time_scale=0.0))
-    assert witness.is_beyond
+    as_recorded = replace(make_motion(), time_scale=0.0)
+    assert turn_smear.measure_smear_mm(survey, as_recorded) > MOST_MM
 
 
 def test_of_a_sensor_that_never_turns_nothing_is_known():
     still = make_motion(calm_s=2 * WHOLE_S)
-    assert np.isnan(turn_smear.measure_smear(make_survey(BEAM_S), still).value)
+    assert np.isnan(turn_smear.measure_smear_mm(make_survey(BEAM_S), still))

@@ -54,6 +54,8 @@ N_RECORDED = "n_recorded"
 """Under this name a table of poses says how many scans were recorded."""
 OF_POSES = "of_poses"
 """Under this name a table of motion says whether it is that of the poses, or of others in a map."""
+SMEAR_MM = "smear_mm"
+"""Under this name it says by how much thicker surfaces are in turns, `nan` where not known."""
 MOTION = Schema(
     "motion",
     1,

@@ -13,7 +13,6 @@ from scanplan.geometry import plane_scatter, se3
 from scanplan.recordings.motion import pose_kind, time_check
 from scanplan.recordings.motion.trajectory import SensorMotion
 from scanplan.recordings.survey_protocol import Survey
-from scanplan.stage.witnesses import Measured, state_witness
 from scanplan.types import FloatArray, IntArray
 
 _NEAR_NS = 100_000_000  # a sweep of a tenth of a second lies before its stamp or after it
@@ -25,14 +24,14 @@ _PLACES_A_WINDOW = 200
 _SEED = 1  # of the choice of places
 
 
-def measure_smear(survey: Survey, motion: SensorMotion) -> Measured:
+def measure_smear_mm(survey: Survey, motion: SensorMotion) -> float:
     """Return by how many millimetres surfaces are thicker in turns than elsewhere.
 
     NaN where points carry times that are used, poses drift, or too few windows are calm or turning.
     """
     is_moved = survey.sweep_times is not None and motion.time_scale > 0
     if survey.pose_kind != pose_kind.LOCALISER or is_moved:
-        return state_witness("smeared turns", np.nan)
+        return np.nan
     t_ns = survey.stamps()
     turn_rad_s = _turn_rates(t_ns, motion)
     windows = [w for w in time_check.list_windows(t_ns) if len(w) >= _FEWEST_SCANS]
@@ -41,10 +40,10 @@ def measure_smear(survey: Survey, motion: SensorMotion) -> Measured:
     calm = [windows[i] for i in order[:_MOST] if rates[i] < _CALM_RAD_S]
     turning = [windows[i] for i in order[-_MOST:] if rates[i] >= _TURNING_RAD_S]
     if min(len(calm), len(turning)) < _FEWEST:
-        return state_witness("smeared turns", np.nan)
+        return np.nan
     as_recorded = replace(motion, time_scale=0.0)
     thick_m, thin_m = (_measure_thickness(survey, w, as_recorded) for w in (turning, calm))
-    return state_witness("smeared turns", 1000 * (thick_m - thin_m))
+    return 1000 * (thick_m - thin_m)
 
 
 def _turn_rates(t_ns: IntArray, motion: SensorMotion) -> FloatArray:

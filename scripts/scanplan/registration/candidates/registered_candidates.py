@@ -22,7 +22,7 @@ from scanplan.registration.registration_settings import (
     registration_settings,
 )
 from scanplan.registration.sequential import ScanResult
-from scanplan.stage import log
+from scanplan.stage import log, witnesses
 from scanplan.store import pose_columns, schemas, tables
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
@@ -120,6 +120,12 @@ def read_odometry(moved: FilePath, t_ns: IntArray) -> mapping.StepsBetween | Non
     if motion.of_poses:
         return None
     return lambda rows: motion.steps(t_ns[rows])
+
+
+def read_smear(moved: FilePath) -> witnesses.Measured:
+    """Return by how much thicker surfaces are in turns of motion.parquet."""
+    smear_mm = tables.read_note(moved, schemas.MOTION, schemas.SMEAR_MM) or "nan"
+    return witnesses.state_witness("smeared turns", float(smear_mm))
 
 
 def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> DamagedClouds:
