@@ -132,7 +132,7 @@ def _times(block: LasBlock, time_s: FloatArray | None) -> FloatArray:
     if time_s is None:
         raise StageError(
             f"{block.path}: its points have no time (point formats 0 and 2); export them with"
-            " GPS time"
+            " GPS time, or leave out the trajectory: without it they are a merged cloud"
         )
     return time_s
 

@@ -114,9 +114,10 @@ WITNESSES = {
         SKETCH,
         "scans are smeared where the sensor turns",
         "surfaces are {value} thicker where the sensor turns than where it does not",
-        "points carry no times, or none of a sweep, and a scan cannot be freed of the motion during"
-        " it",
-        "record points with their times (a setting or field of the driver's), or turn slowly",
+        "points carry no times, or none of a sweep, so that nothing frees a scan of the motion"
+        " during it, or poses are stamped late",
+        "record points with their times (a setting or field of the driver's), set both clocks, or"
+        " turn slowly",
     ),
     # parts of a bag that was split follow one another within a day
     "days apart": Witness(
