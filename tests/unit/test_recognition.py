@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
@@ -113,6 +115,29 @@ def test_each_of_several_changes_is_found_and_a_room_that_moved_once_is_none():
     once = [submap(room(3 if i == 4 else 6, 6), i) for i in range(9)]
     found = folds.compare_places(once, poses, way_m)
     assert (found.lacking > 0.2).any() and folds.find_seams(found, []) == []
+
+
+def passed_twice(pairs, differ):
+    pairs = np.array(pairs, np.int64).reshape(-1, 2)
+    places = np.arange(pairs.max(initial=0) + 1)
+    lacking = np.where(differ, 0.5, 0.0)
+    return folds.PassedTwice(places, np.zeros((len(places), 2)), pairs, lacking, 0 * lacking)
+
+
+def test_one_place_of_many_that_differs_is_no_change():
+    """That none changed explains three of four pairs; so does a change before submap 6."""
+    found = passed_twice([(5, 3), (5, 4), (6, 4), (6, 5)], [False, False, True, False])
+    assert folds.find_seams(found, []) == []
+
+
+_PAIRS = st.tuples(st.integers(0, 8), st.integers(1, 8)).map(lambda p: (p[0] + p[1], p[0]))
+
+
+@given(st.lists(st.tuples(_PAIRS, st.booleans()), min_size=1, max_size=12))
+def test_seams_are_found_in_their_order_whatever_differs(places):
+    pairs, differ = zip(*places, strict=True)
+    likeliest = [seam.likeliest for seam in folds.find_seams(passed_twice(pairs, differ), [])]
+    assert likeliest == sorted(set(likeliest))
 
 
 def test_walls_of_a_lobby_that_a_twin_of_it_has_not_are_told():

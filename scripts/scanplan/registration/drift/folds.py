@@ -180,8 +180,9 @@ def _part_places(pairs: IntArray, differ: BoolArray) -> list[tuple[int, int]]:
         return []
     first, last = _find_seam(pairs, differ)
     is_before, is_after = pairs[:, 0] < first, pairs[:, 1] >= first
-    # chairs that moved at one place are no other map
-    if differ[~is_before & ~is_after].mean() <= _MOST_DIFFER:
+    is_across = ~is_before & ~is_after
+    # chairs that moved at one place are no other map; that none changed may be likeliest
+    if not is_across.any() or differ[is_across].mean() <= _MOST_DIFFER:
         return []
     return [
         *_part_places(pairs[is_before], differ[is_before]),
