@@ -106,12 +106,12 @@ WITNESSES = {
         "set both clocks, and stamp poses by the scans that they are made of",
     ),
     # 3.9 mm in 16 sound surveys, 11 in one whose scanner hangs upside down; of points that are left
-    # as recorded, 9 to 28 in eleven
+    # as recorded, 9 to 28 in eleven; the Jackal has 25, and all its walls
     "smeared turns": Witness(
         12.0,
         "{:.0f} mm",
         CAUSE,
-        SKETCH,
+        PLAN,
         "scans are smeared where the sensor turns",
         "surfaces are {value} thicker where the sensor turns than where it does not",
         "points carry no times, or none of a sweep, so that nothing frees a scan of the motion"
