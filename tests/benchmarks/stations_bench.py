@@ -23,6 +23,7 @@ from scanplan.lab.evaluation import truth_file
 from scanplan.lab.evaluation.scores import scene_file, score_files, sight
 from scanplan.lab.evaluation.visible_faces import SensorView
 from scanplan.lab.simulation import raycast, survey_setup, survey_truth
+from scanplan.lab.simulation.rover import planar_poses
 from scanplan.store.tum import format_tum
 from scanplan.types import FloatArray, Settings
 
@@ -95,13 +96,9 @@ def _place_stations(site: Building, n: int) -> FloatArray:
     way_m = np.asarray(site.waypoints_m)
     along_m = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(way_m, axis=0), axis=1))])
     at_m = (np.arange(n) + 0.5) * along_m[-1] / n
-    poses = np.tile(np.eye(4), (n, 1, 1))
-    poses[:, :2, 3] = np.column_stack([np.interp(at_m, along_m, axis) for axis in way_m.T])
-    poses[:, 2, 3] = _HEIGHT_M
-    yaw = np.random.default_rng(_SEED).uniform(0, 2 * np.pi, n)
-    poses[:, 0, 0], poses[:, 0, 1] = np.cos(yaw), -np.sin(yaw)
-    poses[:, 1, 0], poses[:, 1, 1] = np.sin(yaw), np.cos(yaw)
-    return poses
+    xy_m = np.column_stack([np.interp(at_m, along_m, axis) for axis in way_m.T])
+    yaw_rad = np.random.default_rng(_SEED).uniform(0, 2 * np.pi, n)
+    return planar_poses(xy_m, yaw_rad, _HEIGHT_M)
 
 
 def _scan(site: Building, poses: FloatArray, *, step_deg: float) -> Iterator[FloatArray]:

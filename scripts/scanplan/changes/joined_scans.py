@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +16,13 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
+
+
+class _Kept(NamedTuple):
+    """Which points (n,) of a scan no later survey has overtaken, and sectors (72,) of others."""
+
+    points: BoolArray
+    left_out: BoolArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,29 +77,26 @@ class Drive:
     @property
     def n_points(self) -> IntArray:
         """How many points are kept of each scan of `known`, (n,) int64."""
-        return np.array([kept.sum() for kept, _ in self._kept.values()], np.int64)
+        return np.array([kept.points.sum() for kept in self._kept.values()], np.int64)
 
     @property
     def left_out(self) -> list[BoolArray]:
         """Of each scan of `known`, in which sectors of azimuth (72,) rays were overtaken."""
-        return [left_out for _, left_out in self._kept.values()]
+        return [kept.left_out for kept in self._kept.values()]
 
     def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
         wanted = self.known.scan_ids.tolist() if scan_ids is None else list(map(int, scan_ids))
         for scan_id, xyz_m in self.own[0].scans(wanted):
-            yield scan_id, self._move(xyz_m[self._kept[scan_id][0]]).astype(np.float32)
+            yield scan_id, self._move(xyz_m[self._kept[scan_id].points]).astype(np.float32)
 
     def _move(self, xyz_m: FloatArray) -> FloatArray:
         xyz_m = xyz_m.astype(float)
         return np.column_stack([self.motion.move(xyz_m[:, :2]), xyz_m[:, 2] + self.lift_m])
 
     @cached_property
-    def _kept(self) -> dict[int, tuple[BoolArray, BoolArray]]:
-        """Which points (n,) of a scan no later survey has overtaken, by scan; none without any.
-
-        And in which sectors of azimuth (72,) the others are.
-        """
+    def _kept(self) -> dict[int, _Kept]:
+        """What is kept of each scan, by its number; of none whose points all were overtaken."""
         store, registered = self.own
         sensors_m = self._move(registered.map_from_sensor[:, :3, 3]) - [0, 0, self.floor_m]
         scans = store.scans(registered.scan_ids)
@@ -106,7 +111,7 @@ class Drive:
                 way_x_m, way_y_m = (ends_m - sensor_m)[~is_kept, :2].T
                 left_out[number_sectors(np.arctan2(way_y_m, way_x_m))] = True
             if is_kept.any():
-                found[scan_id] = (is_kept, left_out)
+                found[scan_id] = _Kept(is_kept, left_out)
         return found
 
 

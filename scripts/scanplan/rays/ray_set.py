@@ -100,8 +100,10 @@ class RaySet:
         """
         usual = []
         for (azimuth_rad, way_m), left_out in zip(self.ways(), self.left_out, strict=True):
-            is_whole = ~left_out[azimuth_sectors.number_sectors(azimuth_rad)]
-            usual.append(usual_returns.count_returns_below(azimuth_rad[is_whole], way_m[is_whole]))
+            known = slice(None)
+            if left_out.any():
+                known = ~left_out[azimuth_sectors.number_sectors(azimuth_rad)]
+            usual.append(usual_returns.count_returns_below(azimuth_rad[known], way_m[known]))
         return np.array(usual)
 
     @cached_property

@@ -50,8 +50,7 @@ def _turn_rates(t_ns: IntArray, motion: SensorMotion) -> FloatArray:
     """Return how fast the sensor turned around some times (n,), radians a second; NaN unknown."""
     around = np.column_stack([t_ns - _NEAR_NS, t_ns + _NEAR_NS]).ravel()
     step = motion.steps(around)[::2]
-    still = np.broadcast_to(np.eye(4), step.shape)
-    return se3.turn_between_rad(still, step) / (2 * _NEAR_NS / 1e9)
+    return se3.turn_between_rad(np.eye(4), step) / (2 * _NEAR_NS / 1e9)
 
 
 def _measure_thickness(survey: Survey, windows: Sequence[IntArray], motion: SensorMotion) -> float:
