@@ -89,7 +89,7 @@ def find_changes(driven: DrivenMap) -> list[Change]:
     for row in (row + 1 for row in pauses_after):
         as_it_is = se3.invert_pose(poses[row - 1]) @ poses[row]
         found.setdefault(row, Change(row, as_it_is, RECORDED))
-    for seam in folds.find_seams(driven.places, sorted(found)):
+    for seam in folds.find_seams(driven.places, driven.t_ns, sorted(found)):
         row = _find_break(driven, seam)
         step = unknown if driven.steps is None else driven.steps[row - 1]
         found[row] = Change(row, step, joins.ODOMETRY)
@@ -141,10 +141,10 @@ def _is_change(jump: joins.MapJump) -> bool:
 def _find_break(driven: DrivenMap, seam: folds.Seam) -> int:
     """Return the row before which the map changed: after a pause, or where nothing is aligned."""
     is_tied = joins.find_tied(driven.scan_ids, driven.optimised)
-    is_pause = np.diff(driven.t_ns, prepend=driven.t_ns[0]) > joins.LONGEST_S * 1e9
+    after_pauses = set(pauses.find_pauses(driven.t_ns).tolist())
 
     def likelihood(row: int) -> tuple[bool, bool, int]:
-        return bool(is_pause[row]), not is_tied[row], -abs(row - seam.likeliest)
+        return row in after_pauses, not is_tied[row], -abs(row - seam.likeliest)
 
     return max(range(seam.after + 1, seam.last + 1), key=likelihood)
 

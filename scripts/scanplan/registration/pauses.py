@@ -27,6 +27,11 @@ def measure_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) 
     )
 
 
+def find_pauses(t_ns: IntArray) -> IntArray:
+    """Return the rows of the first scans after pauses, in which a sensor may have been carried."""
+    return np.flatnonzero(np.diff(t_ns) > LONGEST_S * 1e9) + 1
+
+
 def find_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> list[int]:
     """Return the rows of the last scans before pauses without a link over them.
 
@@ -42,10 +47,9 @@ def find_untied(scan_ids: IntArray, t_ns: IntArray, optimised: OptimisedMap) -> 
         if weight >= INLIER_WEIGHT
     ]
     earlier, later = np.searchsorted(scan_ids, np.array(ties, np.int64).reshape(-1, 2)).T
-    pause_s = np.diff(t_ns) / 1e9
     return [
         row
-        for row in np.flatnonzero(pause_s > LONGEST_S).tolist()
+        for row in (find_pauses(t_ns) - 1).tolist()
         if min(row + 1, len(scan_ids) - row - 1) >= _LEAST_SCANS
         and not np.any((earlier <= row) & (later > row))
     ]
