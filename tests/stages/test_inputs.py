@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from faults import making
 from helpers import bag_making, cloud_files, e57_making, las_making, ptx_making, small_flat
 from scanplan.errors import StageError
 from scanplan.geometry import se3
@@ -53,11 +54,27 @@ MERGED = {
 }
 
 
-@pytest.mark.parametrize("name", MERGED)
-def test_a_merged_cloud(tmp_path, bag_plan, name):
+def merge_stations():
     stations = zip(small_flat.station_poses(), small_flat.station_points(), strict=True)
     xyz_m = np.concatenate([se3.transform_points(pose, seen) for pose, seen in stations])
-    MERGED[name](tmp_path / name, xyz_m[np.isfinite(xyz_m).all(axis=1)])
+    return xyz_m[np.isfinite(xyz_m).all(axis=1)]
+
+
+def test_a_merged_cloud_in_feet_is_no_plan_until_the_key_is_set(tmp_path, bag_plan):
+    cloud_files.write_by_open3d(tmp_path / "flat.ply", merge_stations() / 0.3048)
+    files = dataset_files.find_files(tmp_path / "flat.ply")
+    (tmp_path / "as_it_is").mkdir()
+    told = making.make_plan(tmp_path / "as_it_is", files).findings
+    assert [(one.witness, "advanced.input.cloud_unit: ft" in one.remedy) for one in told] == [
+        ("wide ways", True)
+    ]
+    plan = small_flat.plan_of(tmp_path / "plan", files, cloud_unit="ft")
+    small_flat.assert_same_plan(plan, bag_plan)
+
+
+@pytest.mark.parametrize("name", MERGED)
+def test_a_merged_cloud(tmp_path, bag_plan, name):
+    MERGED[name](tmp_path / name, merge_stations())
     plan = small_flat.plan_of(tmp_path / "plan", dataset_files.find_files(tmp_path / name))
     small_flat.assert_same_plan(plan, bag_plan)
     told = doubts.read_doubts(tmp_path / "plan/plan_free.parquet", schemas.FREE)

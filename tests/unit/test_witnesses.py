@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from helpers import floorplan_making
 from scanplan.registration import pose_lean
 from scanplan.stage import witness_table, witnesses
+from scanplan.store import doubts
 from scanplan.validation import survey_witnesses
 
 
@@ -72,6 +73,16 @@ def test_a_way_is_as_narrow_as_its_narrowest_place():
     assert survey_witnesses.measure_narrowest(plan, way_m) == pytest.approx(1.0, abs=0.6)
     in_one_room = np.array(ends[0])
     assert np.isnan(survey_witnesses.measure_narrowest(plan, in_one_room))
+
+
+def test_a_merged_cloud_is_asked_for_a_way_as_narrow_as_a_door():
+    plan = floorplan_making.plan(doubted=doubts.Doubts(rayless=("no rays",)))
+    width_m = np.where(plan.openings["type"] == "door", 3.0, 1.0)
+    plan.openings["width_m"][:] = width_m
+    assert survey_witnesses.measure_narrowest_way(plan) == 3.0
+    without = floorplan_making.bare()
+    for other in (floorplan_making.plan(), without):
+        assert np.isnan(survey_witnesses.measure_narrowest_way(other))
 
 
 def test_head_room_speaks_where_no_door_shows_which_way_is_up():

@@ -416,6 +416,17 @@ WITNESSES = {
         "ranges and poses may be in feet",
         "set advanced.input.cloud_unit and advanced.input.pose_unit: ft",
     ),
+    # the narrowest ways of 92 sound plans are .5 to 1.24 m wide; a hall may have gates alone
+    "wide ways": Witness(
+        2.0,
+        _METRES,
+        CAUSE,
+        SKETCH,
+        "no way is as narrow as a door",
+        "the narrowest way through a wall is {value} wide",
+        "the file may be in feet, or doors stood shut and gates open",
+        "if it is in feet set advanced.input.cloud_unit: ft",
+    ),
     # 1.98 m of one that hangs from a mast
     "sensor height": Witness(
         2.5,

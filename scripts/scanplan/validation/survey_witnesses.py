@@ -3,7 +3,7 @@
 import numpy as np
 import shapely
 
-from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
+from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m, line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage.witnesses import Measured, state_witness
@@ -42,6 +42,7 @@ def measure_plan(
         state_witness("mirrored rays", mirrored, where=where),
         state_witness("narrowest place", measure_narrowest(plan, xyz_m[:, :2])),
         state_witness("sensor height", sensor_z_m - plan.floor_z_m),
+        state_witness("wide ways", measure_narrowest_way(plan)),
         state_witness("head room", measure_head_room(plan, sensor_z_m), above_m=above_m),
     ]
 
@@ -58,6 +59,15 @@ def measure_head_room(plan: FloorPlan, sensor_z_m: float) -> float:
         return np.nan
     height_m = np.fmax(plan.ceiling_z_m - plan.floor_z_m, _LEAST_STOREY_M)
     return 1 - (plan.ceiling_z_m - sensor_z_m) / height_m
+
+
+def measure_narrowest_way(plan: FloorPlan) -> float:
+    """Return how wide the narrowest door or passage of a merged cloud is, metres.
+
+    NaN of others: where a sensor was carried tells more.
+    """
+    widths_m = plan.openings["width_m"][np.isin(plan.openings["type"], WAYS)]
+    return float(widths_m.min()) if plan.doubted.rayless and len(widths_m) else np.nan
 
 
 def measure_narrowest(plan: FloorPlan, track_m: FloatArray) -> float:
