@@ -35,7 +35,7 @@ def plan(**tables):
 
 
 def test_what_costs_most_if_it_is_wrong_comes_first():
-    """A room at 4, a door at 3, a wall at 2 and a window at 1, each as likely wrong as right."""
+    """A room at 2, a door at 1.7, a wall at 1.4, a window at 1, each as likely wrong as right."""
     made = plan(
         walls=rated(floorplan_making.walls(), [0]),
         openings=rated(floorplan_making.openings(), [0, 2]),
@@ -43,7 +43,7 @@ def test_what_costs_most_if_it_is_wrong_comes_first():
     )
     found = doubts.list_doubts(made)
     assert [doubt.element for doubt in found] == ["room 0", "opening 0", "wall 0", "opening 2"]
-    assert [doubt.cost for doubt in found] == [2.0, 1.5, 1.0, 0.5]
+    assert [doubt.cost for doubt in found] == [1.0, 0.85, 0.7, 0.5]
 
 
 def test_what_is_likelier_wrong_comes_before_what_costs_as_much():
