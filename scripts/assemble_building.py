@@ -148,5 +148,6 @@ if __name__ == "__main__":
             name=snakemake.params.name,
             storeys=snakemake.params.storeys,
             settings=snakemake.params.settings,
+            receivers=snakemake.params.receivers,
             version=code_files.state_version(),
         )

@@ -9,6 +9,7 @@ from scanplan.design import as_built, design_reading, deviation_table, deviation
 from scanplan.exports import drawing, svg
 from scanplan.exports.changes import change_geojson, compared_sheet, design_sheet
 from scanplan.exports.data import element_tables
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
@@ -25,6 +26,7 @@ def compare_design(
     settings: Settings,
     limits: Mapping[str, Any],
     unwanted: Iterable[FilePath] = (),
+    words: Mapping[str, Any] | None = None,
     version: str = "",
 ) -> None:
     """Write deviations.parquet, and the deviations as CSV, GeoJSON and drawing.
@@ -46,6 +48,8 @@ def compare_design(
         See `tolerance_file.read_tolerances`.
     unwanted : iterable of path-like
         Files to remove where they exist: those of an earlier design that was a model.
+    words : dict, optional
+        Of the receiver's language, see `words_file.read_words`; English if not given.
     version : str
         Of the software, for the title block.
 
@@ -72,7 +76,8 @@ def compare_design(
     title = f"{name} against its design, {Path(design).name}, {found.storey.name}"
     summary = [title, *lines, f"tolerances: {allowed.title}", tied, *filter(None, warnings)]
     surveyed = summarise_survey(evidence).surveyed
-    facts = compared_sheet.ComparedFacts(settings["project"] or "", ("", surveyed), version)
+    locale = make_locale(settings["units"], words)
+    facts = compared_sheet.ComparedFacts(settings["project"] or "", ("", surveyed), version, locale)
     sheet = design_sheet.compose_design_sheet(found, told, allowed.title, facts)
     figure = drawing.draw_sheet(sheet)
     tables.write_table(
@@ -110,5 +115,6 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             limits=snakemake.params.limits,
             unwanted=snakemake.params.unwanted,
+            words=snakemake.params.receiver["words"],
             version=code_files.state_version(),
         )

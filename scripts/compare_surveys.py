@@ -1,10 +1,12 @@
 """Write what changed on a floor between two surveys of it."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from scanplan.changes import change_table, comparison, survey_files
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.changes import change_geojson, change_sheet, compared_sheet
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.project import code_files
 from scanplan.report import changes_page
@@ -21,6 +23,7 @@ def compare_surveys(
     names: tuple[str, str],
     settings: Settings,
     page: Mapping[str, str],
+    receiver: Mapping[str, Any] | None = None,
     version: str = "",
 ) -> None:
     """Write changes.parquet, and the changes as GeoJSON, drawing and page.
@@ -38,6 +41,8 @@ def compare_surveys(
         What `export_plan` is told of the later survey.
     page : dict of str to str
         The page's template and style, file name to text.
+    receiver : dict, optional
+        As of `export_plan`.
     version : str
         Of the software, for the title block.
 
@@ -46,6 +51,7 @@ def compare_surveys(
     StageError
         If the surveys do not fit each other.
     """
+    told = receiver or {}
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
 
     def read_day(files: Mapping[str, FilePath]) -> str:
@@ -62,7 +68,10 @@ def compare_surveys(
     lines = change_table.summarise_changes(found.changes)
     warning = change_table.warn_of_others(found.tie)
     facts = compared_sheet.ComparedFacts(
-        settings["project"] or "", (read_day(a), read_day(b)), version
+        settings["project"] or "",
+        (read_day(a), read_day(b)),
+        version,
+        make_locale(settings["units"], told.get("words")),
     )
     sheet = change_sheet.compose_change_sheet(found, facts)
     figure = drawing.draw_sheet(sheet)
@@ -81,7 +90,9 @@ def compare_surveys(
     atomic.write_text(outputs["svg"], drawn)
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
-    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"]))
+    atomic.write_text(
+        outputs["dxf"], dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"))
+    )
     atomic.write_text(outputs["page"], changes_page.format_page(found, page, summary, drawn))
     atomic.write_text(outputs["summary"], "\n".join([*summary, ""]))
     if warning:
@@ -106,5 +117,6 @@ if __name__ == "__main__":
             names=(snakemake.wildcards.earlier, snakemake.wildcards.dataset),
             settings=snakemake.params.settings,
             page=changes_page.read_sources(snakemake.input.page),
+            receiver=snakemake.params.receiver,
             version=code_files.state_version(),
         )

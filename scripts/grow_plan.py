@@ -1,6 +1,7 @@
 """Write one plan of several surveys of a floor, and what each contributed."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from scanplan.arrays import array_plan
 from scanplan.changes import growth, growth_table, survey_files
@@ -10,6 +11,7 @@ from scanplan.exports import drawing, dxf, geojson, svg
 from scanplan.exports.changes import compared_sheet, growth_sheet
 from scanplan.exports.data import element_ids, element_tables
 from scanplan.exports.model_origin import ModelOrigin
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import code_files
@@ -24,6 +26,7 @@ def grow_plan(
     *,
     names: Sequence[str],
     settings: Settings,
+    receiver: Mapping[str, Any] | None = None,
     threads: int = 1,
     version: str = "",
 ) -> None:
@@ -41,6 +44,8 @@ def grow_plan(
         Of the datasets.
     settings : dict
         All of the latest survey.
+    receiver : dict, optional
+        As of `export_plan`.
     threads : int
         Cores to use; the result does not depend on it.
     version : str
@@ -51,7 +56,7 @@ def grow_plan(
     StageError
         If the surveys do not fit each other.
     """
-    export = settings["plan"]["export"]
+    export, told = settings["plan"]["export"], receiver or {}
     assumed_m = {key: export[key] for key in ("assumed_thickness_m", "assumed_height_m")}
 
     def read_day(files: Mapping[str, FilePath]) -> str:
@@ -70,7 +75,10 @@ def grow_plan(
     columns = growth_table.tabulate_contributions(grown)
     lines = growth_table.summarise_growth(grown)
     facts = compared_sheet.ComparedFacts(
-        export["project"] or "", (read_day(surveys[0]), read_day(surveys[-1])), version
+        export["project"] or "",
+        (read_day(surveys[0]), read_day(surveys[-1])),
+        version,
+        make_locale(export["units"], told.get("words")),
     )
     sheet = growth_sheet.compose_growth_sheet(grown, facts)
     figure = drawing.draw_sheet(sheet)
@@ -90,7 +98,7 @@ def grow_plan(
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], title))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
-    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, export["dxf_unit"]))
+    atomic.write_text(outputs["dxf"], dxf.format_dxf(sheet, export["dxf_unit"], told.get("layers")))
     atomic.write_text(outputs["summary"], "\n".join([title, *lines, ""]))
     log.log_line(f"grow_plan: {'; '.join(lines)}")
 
@@ -122,6 +130,7 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             names=snakemake.params.names,
             settings=snakemake.params.settings,
+            receiver=snakemake.params.receiver,
             threads=snakemake.threads,
             version=code_files.state_version(),
         )

@@ -9,6 +9,7 @@ import shapely
 
 from helpers.changing_floor import DOOR, INNER, survey
 from helpers.drawn_floor_making import OUTER_M, storey
+from helpers.sheet_words import LANGUAGES, find_english, texts
 from scanplan.changes import comparison
 from scanplan.changes.change_words import ChangeWords
 from scanplan.changes.plane_motion import PlaneMotion
@@ -29,14 +30,16 @@ from scanplan.design.deviations import (
 from scanplan.design.tolerances import Tolerances
 from scanplan.errors import StageError
 from scanplan.exports import drawing
-from scanplan.exports.changes import design_sheet, model_facts
+from scanplan.exports.changes import change_sheet, design_sheet, model_facts
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
+    Overlay,
     Told,
     compose_compared_sheet,
     draw_areas,
 )
 from scanplan.exports.sheet.lettering import word_box
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.geometry.lines import Line
 from scanplan.store import schemas, tables
 
@@ -230,6 +233,39 @@ def test_the_table_is_read_back_and_the_sheet_lists_what_differs(tmp_path):
     assert drawing.draw_sheet(sheet) is not None
 
 
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_sheets_of_changes_and_deviations_are_in_the_language_of_the_receiver(language):
+    drawn = storey(inner=[INNER, STILL], doors=[DOOR])
+    built = survey([(5.1, 0, 5.1, 5), STILL], [])
+    found, rated = against(drawn, built)
+    changes = comparison.compare_placed(survey([INNER, STILL], [DOOR]), built, found.compared.tie)
+
+    def compose_design(locale):
+        facts = ComparedFacts("", ("", "2026-02-18"), "", locale)
+        return design_sheet.compose_design_sheet(found, rated, "ours", facts)
+
+    def compose_changes(locale):
+        facts = ComparedFacts("", ("2026-02-17", "2026-02-18"), "", locale)
+        return change_sheet.compose_change_sheet(changes, facts)
+
+    # names of the plans and of the table stay
+    assert find_english(compose_design, language) == {"design", "floor", "ours"}
+    assert find_english(compose_changes, language) == {"floor"}
+
+
+@pytest.mark.parametrize(
+    ("unit", "expected"),
+    # moved by 0.1 m: 10 cm, 3.9 inches
+    [("m", {"By, cm", "-10.0"}), ("mm", {"By, mm", "-100.0"}), ("ft", {"By, in", "-3.9"})],
+)
+def test_distances_are_in_the_unit_of_the_receiver(unit, expected):
+    drawn = storey(inner=[INNER, STILL], doors=[])
+    found, rated = against(drawn, survey([(5.1, 0, 5.1, 5), STILL], []))
+    facts = ComparedFacts("", ("", "today"), "", Locale(unit))
+    sheet = design_sheet.compose_design_sheet(found, rated, "ours", facts)
+    assert expected <= {text.partition(" ±")[0] for text in texts(sheet)}
+
+
 def test_words_of_the_list_do_not_run_into_each_other():
     rows = [
         ChangeWords("wall a13/b10", "moved", "10.1 ± 1.0", "0.96"),
@@ -239,7 +275,11 @@ def test_words_of_the_list_do_not_run_into_each_other():
     marks = list(draw_areas("within", shapely.box(0, 0, 8, 5), "wall-0"))
     for listed in (told[:1], told):
         sheet = compose_compared_sheet(
-            "floor", (marks, []), listed, [], turn_deg=0.0, list_values=lambda _: [[("Of", "a", 3)]]
+            "floor",
+            Overlay(marks, [], listed),
+            ENGLISH,
+            turn_deg=0.0,
+            list_values=lambda _: [[("Of", "a", 3)]],
         )
         boxes = [word_box(word) for word in sheet.paper_words]
         one, other = shapely.STRtree(boxes).query(boxes, predicate="intersects")

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from helpers.changing_floor import DOOR, INNER, OUTER, SENSORS, sides, survey, without
 from helpers.changing_floor import cast as measure
+from helpers.sheet_words import LANGUAGES, find_english
 from scanplan.changes import growth, growth_table
 from scanplan.changes.contributions import rate_contributions, sum_lengths_m
 from scanplan.changes.joined_scans import Drive, JoinedScans, check_alike, place_drive
@@ -204,6 +205,18 @@ def test_the_sheet_of_both_marks_what_the_latest_alone_saw():
     (stood,) = [mark for mark in sheet.marks if mark.kind == "gone"]
     assert np.unique(stood.paths[0][:, 0].round(6)) == pytest.approx([4.9, 5.1])
     assert drawing.draw_sheet(sheet).axes
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_sheet_of_both_is_in_the_language_of_the_receiver(language):
+    grown, _ = grown_floor()
+
+    def compose(locale):
+        days = ("2026-02-17", "2026-02-18")
+        facts = compared_sheet.ComparedFacts("", days, "", locale)
+        return growth_sheet.compose_growth_sheet(grown, facts)
+
+    assert find_english(compose, language) == {*grown.names}
 
 
 def test_surveys_of_which_no_one_plan_can_be_made_are_refused_in_a_line():

@@ -306,6 +306,30 @@ def test_only_guarded_calls_of_stages_say_snakemake():
         assert "snakemake." not in before, script.name
 
 
+RERUN_ALONE = ("code", "content")
+"""Params of rules that make a stage run again, and tell it nothing."""
+
+
+def test_stages_take_all_that_their_rules_hand_them():
+    found = []
+    for rules in (ROOT / "workflow").rglob("*.smk"):
+        for part in re.split(r"^ *rule\b.*:$", rules.read_text(), flags=re.MULTILINE)[1:]:
+            script = re.search(r'^ *script:\s+"(.+)"', part, re.MULTILINE)
+            params = re.search(r"^( *)params:\n((?:\1 +.*\n)+)", part, re.MULTILINE)
+            if script and params:
+                says = (rules.parent / script[1]).read_text()
+                names = re.findall(rf"^{params[1]}    (\w+)=", params[2], re.MULTILINE)
+                is_whole = "dict(snakemake.params" in says or "**snakemake.params" in says
+                found += [
+                    (script[1], name)
+                    for name in names
+                    if name not in RERUN_ALONE
+                    and not is_whole
+                    and f"snakemake.params.{name}" not in says
+                ]
+    assert found == []
+
+
 def test_public_functions_are_annotated():
     assert house_finds.find_unannotated(house_finds.read_modules(SCRIPTS)) == []
 

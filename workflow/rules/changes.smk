@@ -29,6 +29,7 @@ if len(GIVEN) > 1:
         params:
             code=code_of("compare_surveys"),
             settings=setting(stage_settings.select_drawing),
+            receiver=words_of_receiver,
         script:
             "../../scripts/compare_surveys.py"
 
@@ -84,6 +85,7 @@ if len(GIVEN) > 1:
             code=code_of("grow_plan"),
             names=lambda wildcards: surveys_until(wildcards.dataset),
             settings=all_settings,
+            receiver=words_of_receiver,
         script:
             "../../scripts/grow_plan.py"
 

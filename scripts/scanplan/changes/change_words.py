@@ -15,32 +15,32 @@ class ChangeWords(NamedTuple):
         Its kind, and its number in either plan.
     verdict : str
         With a question mark where it is doubtful.
-    by_cm : str
+    by : str
         How far, with the standard deviation where one is known.
     p : str
     """
 
     element: str
     verdict: str
-    by_cm: str
+    by: str
     p: str
 
 
-def say_change(change: Change) -> ChangeWords:
-    """Return a change in words.
+def say_change(change: Change, per_m: float = 100.0) -> ChangeWords:
+    """Return a change in words, how far in units of so many a metre.
 
     >>> import shapely
     >>> line = shapely.LineString([(0, 0), (1, 0)])
     >>> say_change(Change("opening", 3, 4, "moved", 0.8, line, "door", shift_m=-0.1, sigma_m=0.01))
-    ChangeWords(element='door a3/b4', verdict='moved?', by_cm='10.0 ± 1.0', p='0.80')
+    ChangeWords(element='door a3/b4', verdict='moved?', by='10.0 ± 1.0', p='0.80')
     """
     numbers = [("a", change.number_a), ("b", change.number_b)]
     number = "/".join(f"{survey}{n}" for survey, n in numbers if n >= 0)
     kind = change.kind_a or change.kind_b or change.table
     is_doubtful = change.verdict in (*CHANGES, *STATES) and not change.is_told
-    by_cm = ""
+    by = ""
     if math.isfinite(change.shift_m):
-        sigma = f" ± {100 * change.sigma_m:.1f}" if math.isfinite(change.sigma_m) else ""
-        by_cm = f"{100 * abs(change.shift_m):.1f}{sigma}"
+        sigma = f" ± {per_m * change.sigma_m:.1f}" if math.isfinite(change.sigma_m) else ""
+        by = f"{per_m * abs(change.shift_m):.1f}{sigma}"
     verdict = f"{change.verdict}{'?' if is_doubtful else ''}"
-    return ChangeWords(f"{kind} {number}", verdict, by_cm, f"{change.p:.2f}")
+    return ChangeWords(f"{kind} {number}", verdict, by, f"{change.p:.2f}")

@@ -171,9 +171,9 @@ def select_presentation(settings: Settings) -> Keywords:
 
 
 def select_design(settings: Settings) -> Keywords:
-    """Return the settings of `compare_design`: three of drawings, and the design's storey."""
+    """Return the settings of `compare_design`: four of drawings, and the design's storey."""
     export = select_section(settings, "plan", "export")
-    own = {key: export[key] for key in (*_ASSUMED, "project")}
+    own = {key: export[key] for key in (*_ASSUMED, "project", "units")}
     return own | {"design_storey": settings["plan"]["design"]["storey"]}
 
 

@@ -6,17 +6,18 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
-from scanplan.changes.change_table import summarise_tie, warn_of_others
 from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, STATES
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
+    Overlay,
     Told,
     Way,
     compose_compared_sheet,
     draw_areas,
+    say_tie,
 )
 from scanplan.exports.sheet import content, title
 from scanplan.exports.sheet.composition import Sheet
@@ -43,7 +44,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         if not _is_of(symbol, changed)
     ]
     told = [
-        Told(say_change(of.change), of.change.shape)
+        Told(say_change(of.change, facts.locale.fine[0]), of.change.shape)
         for of in drawn
         if of.change.table in _TAGGED and of.change.is_told
     ]
@@ -54,9 +55,8 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
     ]
     return compose_compared_sheet(
         f"{compared.b.plan.name} against {compared.a.plan.name}",
-        (list(_draw(compared, drawn)), symbols),
-        told,
-        ways,
+        Overlay(list(_draw(compared, drawn)), symbols, told, ways),
+        facts.locale,
         turn_deg=-compared.a.plan.main_direction_deg,
         list_values=lambda page: _list_values(compared, facts, page),
     )
@@ -94,13 +94,12 @@ def _list_values(compared: Comparison, facts: ComparedFacts, page: Page) -> list
     n_pieces = sum(c.table == "furniture" for c in likely)
     contents = ", ".join(counts) or "no wall, opening or room"
     doubtful = sum(c.verdict in CHANGES and not c.is_change for c in compared.changes)
-    tied = warn_of_others(compared.tie) or summarise_tie(compared.tie)
     return [
         [("Project", facts.project or names[0], 2), ("Drawing", "Changes", 1)],
-        [("Earlier, a", f"{names[0]}, {facts.days[0]}", 3)],
-        [("Later, b", f"{names[1]}, {facts.days[1]}", 3)],
+        [("Earlier, a", names[0], 2), ("Date of survey", facts.days[0], 1)],
+        [("Later, b", names[1], 2), ("Date of survey", facts.days[1], 1)],
         [("Changed", f"{contents}; {n_pieces} of furniture", 2), ("To verify", str(doubtful), 1)],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "that of a", 1)],
         [("Software", facts.version or "scanplan", 3)],
-        [("Frames tied", tied, 3)],
+        [("Frames tied", say_tie(compared.tie, page.locale), 3)],
     ]

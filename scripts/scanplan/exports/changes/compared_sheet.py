@@ -1,13 +1,15 @@
 """The sheet of two plans over one another: what is told is numbered, and listed in a table."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.changes.change_table import warn_of_others
 from scanplan.changes.change_words import ChangeWords
+from scanplan.changes.frames import FrameTie
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
@@ -17,6 +19,7 @@ from scanplan.exports.sheet.lettering import (
     rotation,
     shorten_text,
 )
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
 from scanplan.exports.sheet.paper import Page, Slot, choose_page, fill_slots
 from scanplan.exports.sheet.styles import Letters, Paper
@@ -26,17 +29,17 @@ from scanplan.types import FloatArray
 _MOST_ROWS = 40  # of the table: more are in the files beside
 _LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
 _TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
-_HEADS = ("No.", "Element", "Verdict", "By, cm", "p")
-_ELEMENT = _HEADS.index("Element")  # what is cut off where a row is longer than a slot is wide
+_ELEMENT = 1  # of the columns: what is cut off where a row is longer than a slot is wide
 
 
 @dataclass(frozen=True)
 class ComparedFacts:
-    """What the title block states of both: project, days, and the software."""
+    """What the title block states of both: project, days, and the software; how it is written."""
 
     project: str
     days: tuple[str, str]
     version: str
+    locale: Locale = ENGLISH
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +64,20 @@ class Way:
     by_m: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """What is drawn of both plans, and what is told of it."""
+
+    marks: Sequence[Mark]
+    symbols: Sequence[Symbol]
+    told: Sequence[Told]
+    ways: Sequence[Way] = ()
+
+
 def compose_compared_sheet(
     name: str,
-    drawn: tuple[Sequence[Mark], Sequence[Symbol]],
-    told: Sequence[Told],
-    ways: Sequence[Way],
+    drawn: Overlay,
+    locale: Locale,
     *,
     turn_deg: float,
     list_values: Callable[[Page], list[list[title.Value]]],
@@ -77,34 +89,44 @@ def compose_compared_sheet(
     list_values : callable
         The title block's fields of a page.
     """
-    marks, symbols = list(drawn[0]), list(drawn[1])
-    listed = told[:_MOST_ROWS]
+    marks, symbols = list(drawn.marks), list(drawn.symbols)
+    listed = drawn.told[:_MOST_ROWS]
     legend = title.list_legend(marks, {symbol.kind for symbol in symbols})
     paths = [path[:, :2] for mark in marks for path in mark.paths]
     turned = np.concatenate(paths) @ rotation(turn_deg).T
     blocks = [6, len(legend), max(len(listed), 1)]
     page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, blocks)
+    page = replace(page, locale=locale)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
-    marks += [_draw_way(way, page) for way in ways]
+    marks += [_draw_way(way, page) for way in drawn.ways]
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
         *title.draw_block(page, list_values(page)),
         *title.draw_scale_bar(page, bar[0]),
         *title.draw_legend(legend, legend_slots, page.locale),
-        *_draw_table([of.words for of in listed], table_slots),
+        *_draw_table([of.words for of in listed], table_slots, locale),
     ]
     return Sheet(
         clean_text(name),
         page,
-        SheetFacts(),
+        SheetFacts(locale=locale),
         marks,
         symbols,
-        list(_place_tags(page, told, marks)),
+        list(_place_tags(page, drawn.told, marks)),
         [],
         [],
         [item for item in beside if isinstance(item, Mark)],
         [item for item in beside if isinstance(item, Word)],
     )
+
+
+def say_tie(tie: FrameTie, locale: Locale) -> str:
+    """Return in words how well frames were tied, or which other ways fit nearly as well."""
+    sigmas = np.sqrt(np.diag(tie.fit.covariance))
+    agree = f"{tie.share:.0%} of the walls agree within {locale.deviation(tie.fit.residual_m)}"
+    placed = f"frames tied to ± {locale.deviation(float(sigmas[:2].max()))}"
+    turned = f"± {np.degrees(sigmas[2]):.2f}°"
+    return warn_of_others(tie) or f"{agree}; {placed}, {turned}"
 
 
 def draw_areas(kind: str, shape: BaseGeometry, element: str) -> Iterator[Mark]:
@@ -127,16 +149,18 @@ def _draw_way(way: Way, page: Page) -> Mark:
     return Mark("way", [straight(np.array([*corners, base_m, way.from_m]))], True)
 
 
-def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[Word]:
+def _draw_table(
+    rows: Sequence[ChangeWords], slots: Sequence[Slot], locale: Locale
+) -> Iterator[Word]:
     """Yield the table: number, element, what became of it, by how much."""
     places = [
         (slot.x_mm, slot.y_mm - (row + 1.5) * Paper.ROW)
         for slot in slots
         for row in range(slot.rows)
     ]
-
-    numbered = [(str(number), *row) for number, row in enumerate(rows, 1)]
-    widths_mm = _find_widths_mm([_HEADS, *numbered])
+    heads = [*map(locale.say, ("No.", "Element", "Verdict", f"By, {locale.fine[1]}", "p"))]
+    numbered = [(str(number), *_say_row(row, locale)) for number, row in enumerate(rows, 1)]
+    widths_mm = _find_widths_mm([heads, *numbered])
 
     def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
         for text, width_mm in zip(texts, widths_mm, strict=True):
@@ -146,11 +170,21 @@ def _draw_table(rows: Sequence[ChangeWords], slots: Sequence[Slot]) -> Iterator[
             x += width_mm
 
     for slot in slots:
-        yield from write("note", slot.x_mm, slot.y_mm - Paper.ROW / 2, _HEADS)
+        yield from write("note", slot.x_mm, slot.y_mm - Paper.ROW / 2, heads)
     if not rows and places:
-        yield from write("title", *places[0], ("", "none", "", "", ""))
+        yield from write("title", *places[0], ("", locale.say("none"), "", "", ""))
     for row, place in zip(numbered, places, strict=False):
         yield from write("title", *place, row)
+
+
+def _say_row(row: ChangeWords, locale: Locale) -> Iterator[str]:
+    """Yield the cells of a row: kind and number of the element, verdict, how far, how likely."""
+    kind, _, number = row.element.partition(" ")
+    yield f"{locale.say(kind)} {number}"
+    verdict = row.verdict.removesuffix("?")
+    yield locale.say(verdict) + row.verdict[len(verdict) :]
+    yield " ± ".join(map(locale.say, row.by.split(" ± ")))
+    yield locale.say(row.p)
 
 
 def _find_widths_mm(rows: Sequence[Sequence[str]]) -> FloatArray:

@@ -7,14 +7,13 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.changes.change_table import summarise_tie, warn_of_others
 from scanplan.changes.change_words import ChangeWords
 from scanplan.changes.verdicts import NOT_SEEN
 from scanplan.design.as_built import AsBuilt, warn_of_alike
-from scanplan.design.deviation_table import summarise_deviations
 from scanplan.design.deviations import (
     ADDITIONAL,
     DEVIATES,
+    FAULTS,
     MISSING,
     OTHER_KIND,
     UNDECIDED,
@@ -23,13 +22,16 @@ from scanplan.design.deviations import (
 )
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
+    Overlay,
     Told,
     Way,
     compose_compared_sheet,
     draw_areas,
+    say_tie,
 )
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark
 from scanplan.exports.sheet.paper import Page
 from scanplan.geometry import overlays
@@ -63,6 +65,7 @@ def compose_design_sheet(
     """
     drawn = [of for of in told if of.change.table != "room"]
     faults = [of for of in drawn if of.is_fault]
+    words = [Told(say_deviation(of, facts.locale.fine[0]), of.change.shape) for of in faults]
     ways = [
         Way(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
         for of in faults
@@ -71,23 +74,22 @@ def compose_design_sheet(
     design = found.compared.a.plan
     return compose_compared_sheet(
         f"{found.compared.b.plan.name} against its design",
-        (list(_draw(found, drawn)), []),
-        [Told(say_deviation(of), of.change.shape) for of in faults],
-        ways,
+        Overlay(list(_draw(found, drawn)), [], words, ways),
+        facts.locale,
         turn_deg=-design.main_direction_deg,
         list_values=lambda page: _list_values(found, told, tolerances, facts, page),
     )
 
 
-def say_deviation(of: Deviation) -> ChangeWords:
-    """Return what is told of an element in words."""
+def say_deviation(of: Deviation, per_m: float = 100.0) -> ChangeWords:
+    """Return what is told of an element in words, how far in units of so many a metre."""
     number = f"a{of.change.number_a}" if of.change.number_a >= 0 else f"b{of.change.number_b}"
-    by_cm = ""
+    by = ""
     if math.isfinite(of.change.shift_m):
-        by_cm = f"{100 * of.change.shift_m:+.1f} ± {100 * of.change.sigma_m:.1f}"
+        by = f"{per_m * of.change.shift_m:+.1f} ± {per_m * of.change.sigma_m:.1f}"
     p = f"{of.p:.2f}" if math.isfinite(of.p) else ""
     return ChangeWords(
-        f"{of.change.kind_a or of.change.table} {number}", of.verdict.replace("_", " "), by_cm, p
+        f"{of.change.kind_a or of.change.table} {number}", of.verdict.replace("_", " "), by, p
     )
 
 
@@ -99,11 +101,15 @@ def _draw(found: AsBuilt, drawn: Sequence[Deviation]) -> Iterator[Mark]:
 
 
 def _class_of(of: Deviation) -> str:
-    if of.verdict in (MISSING, ADDITIONAL, DEVIATES, OTHER_KIND) and not of.is_fault:
-        return _STYLES[UNDECIDED]
-    if of.verdict == DEVIATES and abs(of.change.shift_m) > _FAR * of.limit_m:
+    verdict = _rate(of)
+    if verdict == DEVIATES and abs(of.change.shift_m) > _FAR * of.limit_m:
         return "far-beyond"
-    return _STYLES[of.verdict]
+    return _STYLES[verdict]
+
+
+def _rate(of: Deviation) -> str:
+    """Return the verdict on an element, undecided where it is doubtful that it differs."""
+    return UNDECIDED if of.verdict in FAULTS and not of.is_fault else of.verdict
 
 
 def _cover(found: AsBuilt, of: Deviation) -> BaseGeometry:
@@ -132,17 +138,27 @@ def _list_values(
         if (n := sum(of.is_fault and of.change.table == table for of in told))
     ]
     undecided = sum(of.verdict == UNDECIDED for of in told)
-    tied = warn_of_alike(found) or warn_of_others(compared.tie) or summarise_tie(compared.tie)
-    counted = "; ".join(line for line in summarise_deviations(told) if line.startswith("wall"))
+    tied = warn_of_alike(found) or say_tie(compared.tie, page.locale)
     return [
         [("Project", facts.project or compared.b.plan.name, 2), ("Drawing", "As built", 1)],
         [("Design, a", compared.a.plan.name, 2), ("Tolerances", tolerances, 1)],
-        [
-            ("Survey, b", f"{compared.b.plan.name}, {facts.days[1]}", 2),
-            ("Software", facts.version or "scanplan", 1),
-        ],
+        [("Survey, b", compared.b.plan.name, 2), ("Date of survey", facts.days[1], 1)],
         [("Differ", ", ".join(counts) or "none", 2), ("Undecided", str(undecided), 1)],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "the design's", 1)],
-        [("Walls", counted.removeprefix("wall: "), 3)],
+        [("Walls", _sum_walls(told, page.locale), 2), ("Software", facts.version or "scanplan", 1)],
         [("Fitted by walls", tied, 3)],
     ]
+
+
+def _sum_walls(told: Sequence[Deviation], locale: Locale) -> str:
+    """Return how much wall is of each class that is drawn: what is doubtful is undecided."""
+    walls = [of for of in told if of.change.table == "wall"]
+    lengths_m = {
+        verdict: sum(of.change.shape.length for of in walls if _rate(of) == verdict)
+        for verdict in _STYLES
+    }
+    return "; ".join(
+        f"{verdict.replace('_', ' ')} {locale.measure(length_m, 1)}"
+        for verdict, length_m in lengths_m.items()
+        if length_m
+    )

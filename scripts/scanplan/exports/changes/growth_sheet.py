@@ -1,6 +1,6 @@
 """The sheet of a plan of several surveys: which of them saw what, and what they found changed."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -8,13 +8,13 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.change_words import say_change
-from scanplan.changes.contributions import Contribution
+from scanplan.changes.contributions import Contribution, sum_lengths_m
 from scanplan.changes.growth import Grown
-from scanplan.changes.growth_table import summarise_growth
 from scanplan.changes.verdicts import GONE, MOVED
 from scanplan.exports.changes.change_shapes import list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
+    Overlay,
     Told,
     compose_compared_sheet,
     draw_areas,
@@ -24,7 +24,7 @@ from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.marks import Mark
 from scanplan.exports.sheet.paper import Page
 from scanplan.geometry import overlays
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan, say_count
 
 _TOLD = ("wall", "opening", "column")
 
@@ -35,16 +35,15 @@ def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
         replace(symbol, verify=False, facts={}) for symbol in content.list_symbols(grown.plan)
     ]
     told = [
-        Told(say_change(change), change.shape)
+        Told(say_change(change, facts.locale.fine[0]), change.shape)
         for step in grown.steps
         for change in step.changes
         if change.table in _TOLD and change.is_told
     ]
     return compose_compared_sheet(
         f"{grown.names[-1]} on {', '.join(grown.names[:-1])}",
-        (list(_draw(grown)), symbols),
-        told,
-        [],
+        Overlay(list(_draw(grown)), symbols, told),
+        facts.locale,
         turn_deg=-grown.plan.main_direction_deg,
         list_values=lambda page: _list_values(grown, facts, page),
     )
@@ -84,14 +83,20 @@ def _draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
 
 
 def _list_values(grown: Grown, facts: ComparedFacts, page: Page) -> list[list[title.Value]]:
-    surveys: Sequence[str] = summarise_growth(grown)[: len(grown.names)]
-    days = " to ".join(dict.fromkeys(filter(None, facts.days)))
-    area_m2 = float(np.sum(grown.plan.rooms["area_m2"]))
+    *alone_m, _ = sum_lengths_m(grown.contributions).tolist()
+    days = ", ".join(dict.fromkeys(filter(None, facts.days)))
+    area = page.locale.area(float(np.sum(grown.plan.rooms["area_m2"])))
+
+    def state_survey(row: int) -> list[title.Value]:
+        saw = f"{say_count(grown.n_scans[row], 'scan')}; {page.locale.measure(alone_m[row], 1)}"
+        head = "Latest" if row else "Earliest"
+        return [(head, grown.names[row], 1), ("Saw alone", f"{saw} of wall", 2)]
+
     return [
         [("Project", facts.project or grown.names[0], 2), ("Drawing", "Plan of surveys", 1)],
-        [("Surveyed", days or "not known", 2), ("Rooms", f"{area_m2:.1f} m²", 1)],
+        [("Surveyed", days or "not known", 2), ("Rooms", area, 1)],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "of the first", 1)],
-        [("Earliest", surveys[0], 3)],
-        [("Latest", surveys[-1], 3)],
+        state_survey(0),
+        state_survey(-1),
         [("Software", facts.version or "scanplan", 3)],
     ]

@@ -92,6 +92,13 @@ class Locale:
         return f"{1000 * length_m:.0f} mm"
 
     @property
+    def fine(self) -> tuple[float, str]:
+        """The unit of small distances: how many a metre has, and its name."""
+        if self.is_imperial:
+            return 1 / _INCH_M, "in"
+        return (1000.0, "mm") if self.unit == "mm" else (100.0, "cm")
+
+    @property
     def bar(self) -> tuple[float, str]:
         """The unit of scale bars: its length in metres, and its name."""
         return (_FOOT_M, "ft") if self.is_imperial else (1.0, "m")

@@ -33,7 +33,9 @@ TITLE_TAG = "title:"
 Value = tuple[str, str, int]
 """Of a title block: its head, what it says, and how many of three columns it is wide."""
 _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
-_NAMES = ("Project", "Survey")  # values that are names, in no language
+# values that are names, in no language
+_NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
+_NAMES += ("Earliest", "Latest")
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
 
