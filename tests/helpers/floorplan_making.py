@@ -98,7 +98,7 @@ def walls(rows=WALLS):
     }
 
 
-def openings(rows=OPENINGS):
+def openings(rows=OPENINGS, walls=WALLS):
     n = len(rows)
     ends = _ends([row[0] for row in rows])
     hosts = [row[1] for row in rows]
@@ -108,7 +108,7 @@ def openings(rows=OPENINGS):
         "type": np.array([row[2] for row in rows], object),
         **ends,
         "width_m": np.hypot(ends["x1_m"] - ends["x0_m"], ends["y1_m"] - ends["y0_m"]),
-        "thickness_m": np.array([WALLS[h][1] if h >= 0 else np.nan for h in hosts], float),
+        "thickness_m": np.array([walls[h][1] if h >= 0 else np.nan for h in hosts], float),
         "sill_m": np.array([row[3] for row in rows], float),
         "lintel_m": np.array([row[4] for row in rows], float),
         "room_a": np.array([row[5] for row in rows], np.int32),

@@ -71,9 +71,24 @@ def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     rows = [
         ((0, 0, 4, 0), -1, "glass", 0.0, 2.5, 0, -1),
         ((1, 1, 3, 1.5), -1, "glass", 0, 2.5, 0, -1),
+        # floor that was seen as far as what holds the pane, and the first once more
+        ((7.35, 0, 7.35, 3), -1, "glass", 0, 2.5, 1, -1),
+        ((0.5, -0.2, 3.5, -0.1), -1, "glass", 0, 2.5, 0, -1),
     ]
     sheet = composed(walls=floorplan_making.walls([]), openings=floorplan_making.openings(rows))
-    assert [symbol.element for symbol in sheet.symbols] == ["glass-0"]
+    assert [symbol.element for symbol in sheet.symbols] == ["glass-0", "glass-2"]
+
+
+def test_a_hole_in_a_wall_of_no_room_is_drawn_and_one_in_a_room_is_not():
+    wall = ((8.0, 0, 8.0, 3), 0.2, 9, 10, "observed")
+    rows = [
+        ((8.0, 1, 8.0, 1.6), 6, "gap", 0, 2.5, -1, -1),
+        ((8.0, 2, 8.0, 2.6), 6, "passage", 0, 2.5, 1, 1),
+    ]
+    walls = [*floorplan_making.WALLS, wall]
+    openings = floorplan_making.openings(rows, walls)
+    sheet = composed(walls=floorplan_making.walls(walls), openings=openings)
+    assert [(symbol.element, symbol.kind) for symbol in sheet.symbols] == [("gap-0", "passage")]
 
 
 def test_what_was_changed_and_how_areas_are_measured_is_said():

@@ -126,7 +126,7 @@ def say_tie(tie: FrameTie, locale: Locale) -> str:
     agree = f"{tie.share:.0%} of the walls agree within {locale.deviation(tie.fit.residual_m)}"
     placed = f"frames tied to ± {locale.deviation(float(sigmas[:2].max()))}"
     turned = f"± {np.degrees(sigmas[2]):.2f}°"
-    return warn_of_others(tie) or f"{agree}; {placed}, {turned}"
+    return warn_of_others(tie) or f"{placed}, {turned}; {agree}"
 
 
 def draw_areas(kind: str, shape: BaseGeometry, element: str) -> Iterator[Mark]:

@@ -30,7 +30,6 @@ from scanplan.store import schemas
 from scanplan.types import Array, BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
-_BESIDE_M = 0.05  # from a room's outline to a pane that bounds it: which has no thickness
 _PLAIN = {"gap": "passage"}
 """Openings drawn as others: what lies in them is said on the sheet of what was measured."""
 
@@ -147,20 +146,18 @@ def _find_backs(plan: FloorPlan) -> Array:
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     """Yield openings of walls and between rooms.
 
-    None is a pane in no wall that bounds no room, nor what has no leaf or pane and leads nowhere.
+    None is a pane in no wall that bounds no room, whose floor may end as far before it as before a
+    thick wall, nor what has no leaf or pane and leads from a room into itself.
     """
     leaves = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
-    near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, _BESIDE_M)
+    near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, CORNER_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
     bounds_none = shapely.length(along) < plan.openings["width_m"] / 2
-    # what lies behind the face of a wall is that wall's opening once more
-    behind = overlays.intersect_lines(
-        floorplan.line_shapes(lines_m), overlays.unite_areas(plan.bodies)
-    )
-    is_double = shapely.length(behind) > plan.openings["width_m"] / 2
-    is_none = (plan.hosts < 0) & (bounds_none | is_double)
-    is_none |= find_nowhere(plan) | ~shapely.is_empty(_find_backs(plan))
+    is_none = (plan.hosts < 0) & (bounds_none | _find_doubles(plan))
+    # a hole in a wall of no room is one all the same
+    is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
+    is_none |= (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
     for symbol, is_left_out in zip(content.list_symbols(plan), is_none.tolist(), strict=True):
         if is_left_out:
             continue
@@ -168,6 +165,25 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
             yield draw_swing(symbol, leaves)
         else:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
+
+
+def _find_doubles(plan: FloorPlan) -> BoolArray:
+    """Return which openings (m,) lie behind the face of a wall, or beside a wider pane of no wall.
+
+    They are these openings once more.
+    """
+    lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings))
+    widths_m = np.asarray(plan.openings["width_m"], float)
+    is_pane = np.isin(plan.openings["type"], ("glass", "window")) & (plan.hosts < 0)
+    grounds = overlays.buffer_shapes(lines, CORNER_M, cap_style="flat")
+    bodies = overlays.unite_areas(plan.bodies)
+    is_double = np.zeros(len(lines), bool)
+    for row in np.flatnonzero(plan.hosts < 0).tolist():
+        wider = grounds[is_pane & (widths_m > widths_m[row])]
+        ground = overlays.unite_areas([bodies, *wider])
+        beside_m = overlays.intersect_lines(lines[row], ground).length
+        is_double[row] = beside_m > widths_m[row] / 2
+    return is_double
 
 
 def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
@@ -213,7 +229,8 @@ def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
         f" {locale.deviation(drafted.thickness_m)}.",
         f"Openings widened by at most {locale.deviation(drafted.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (drafted.n_assumed > 0),
-        f"{left_out} left out: short walls at no room, slits." * (drafted.n_left_out > 0),
+        f"{left_out} left out: short walls at no room, slits, ends beyond facades."
+        * (drafted.n_left_out > 0),
         _AREA_RULE,
     ]
     return _wrap(sentences, locale)

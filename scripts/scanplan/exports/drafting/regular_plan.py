@@ -13,6 +13,7 @@ from scanplan.exports.drafting.facades import find_facades, limit_backs
 from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
+from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
@@ -69,7 +70,8 @@ class Drafted:
     moved_m, turned_deg, thickness_m, width_m : float
         The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
     n_assumed, n_left_out : int
-        Walls whose thickness is assumed; short pieces of wall and slits that are not drawn.
+        Walls whose thickness is assumed; short pieces of wall, slits, and ends of walls beyond
+        facades that are not drawn.
     """
 
     n_walls: int
@@ -93,7 +95,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     thickness, and their line is their face. Doubts are left out: they stand on the sheet of what
     was measured.
     """
-    plan = leave_scraps(surveyed)
+    plan, n_cut = cut_stubs(leave_scraps(surveyed))
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     adjusted = adjust_walls(walls, wanted)
@@ -142,7 +144,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         thickness_m=float(np.abs(grown_m).max(initial=0)),
         width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
         n_assumed=int((~walls.is_thick).sum()),
-        n_left_out=_count_elements(surveyed) - _count_elements(plan),
+        n_left_out=_count_elements(surveyed) - _count_elements(plan) + n_cut,
     )
     regular = replace(
         plan,
