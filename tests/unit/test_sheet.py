@@ -241,6 +241,19 @@ def test_an_oblique_facade_in_pieces_is_one_length():
     assert measured == [4.0]
 
 
+def test_what_lies_behind_an_oblique_facade_is_not_measured_from_there():
+    # a recess in the south, whose west side faces the corner that is cut off in the east
+    corners = [(0, 0), (4, 0), (4, 0.8), (5, 0.8), (5, 0), (9, 0), (10, 1), (10, 5), (0, 5)]
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([shapely.Polygon(corners)]),
+    )
+    sheet = composition.compose_sheet(drawn, turn_deg=0.0)
+    east = [d.ends_m for d in sheet.dimensions if d.line_m[:, 0].min() > 10.01]
+    assert len(east) == 2 and np.array(east)[..., 0].min() == pytest.approx(10.0)
+
+
 def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
     """The small room's north side was not seen, nor its east side north of 1.5 m."""
     north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)

@@ -36,6 +36,11 @@ class _Facade:
         """The height of its middle."""
         return (self.y0 + self.y1) / 2
 
+    @property
+    def is_level(self) -> bool:
+        """Whether it runs along the sheet."""
+        return abs(self.y1 - self.y0) <= _SQUARE * (self.x1 - self.x0)
+
     def cut(self, x0: float, x1: float) -> "_Facade":
         """Return the stretch of it from x to x."""
         at_y = np.interp([x0, x1], [self.x0, self.x1], [self.y0, self.y1])
@@ -132,16 +137,16 @@ def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
     edges: list[_Facade] = []
     for part in shapely.get_parts(outline):
         ring = shapely.get_coordinates(shapely.orient_polygons(part).exterior)
-        for (x0, y0), (x1, y1) in itertools.pairwise(ring):
-            # counterclockwise, what runs to the right is below
-            if x1 - x0 > 0 and abs(y1 - y0) <= _SQUARE * (x1 - x0):
-                edges.append(_Facade(x0, y0, x1, y1))
+        # counterclockwise, what runs to the right is below
+        edges += [_Facade(*a, *b) for a, b in itertools.pairwise(ring.tolist()) if b[0] > a[0]]
+    hidden: list[tuple[float, float]] = []
     seen: list[_Facade] = []
     for edge in sorted(edges, key=lambda e: e.y):
-        hidden = [(other.x0, other.x1) for other in seen]
-        for x0, x1 in _cut_intervals((edge.x0, edge.x1), hidden):
-            if x1 - x0 > 0:
-                seen.append(edge.cut(x0, x1))
+        if edge.is_level:
+            free = _cut_intervals((edge.x0, edge.x1), hidden)
+            seen += [edge.cut(x0, x1) for x0, x1 in free if x1 - x0 > 0]
+        # an oblique one is no facade, and hides what is behind it all the same
+        hidden.append((edge.x0, edge.x1))
     joined: list[_Facade] = []
     for facade in sorted(seen, key=lambda e: e.x0):
         last = joined[-1] if joined else None

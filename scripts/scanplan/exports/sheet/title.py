@@ -273,7 +273,8 @@ def draw_room_table(
     for stamp, of_room, (x, y) in zip(stamps, sizes, _row_places(slots), strict=True):
         facts = stamp.facts
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
-        name = shorten_text(facts["NAME"], Letters.SMALL, name_mm - 2.0 * len(marks)) + marks
+        marks_mm = measure_width_mm(marks, Letters.SMALL)
+        name = shorten_text(facts["NAME"], Letters.SMALL, name_mm - marks_mm) + marks
         texts = [facts["NUMBER"], name, *of_room]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
