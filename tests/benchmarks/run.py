@@ -14,6 +14,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py design FOLDER
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py presentation RESULTS TRUTHS [DRIVE ...]
+       run.py files RESULTS SURVEY ... [node=FOLDER]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
        run.py overlays [COUNT [FIRST SEED]]
@@ -84,6 +85,10 @@ made with this code, and kept in FOLDER.
 `presentation` holds regular drawings of simulated drives that are planned in RESULTS against their
 truths, beside what was measured: rooms, walls, directions, and the share of walls whose thickness
 is the true one.
+
+`files` asks validators and readers that are not ours about the files of surveys in RESULTS: schema,
+rules and demands of models, drawings by ezdxf and LibreCAD, PDF by qpdf, layers by GDAL; with
+node=FOLDER, where gltf-validator and web-ifc of npm are, also these.
 
 `odometry` registers drives with odometry alone, of 200 and 600 m with a planar and a spatial
 scanner, two seeds each, and a real one, and fails where poses are farther off than they may be;
@@ -273,6 +278,15 @@ def bench_models(results: str, *surveys: str) -> None:
     models_bench.bench(Path(results), models, surveys)
 
 
+def bench_files(results: str, *words: str) -> None:
+    """What validators and readers of others say of files."""
+    import files_bench
+
+    node = [word.removeprefix("node=") for word in words if word.startswith("node=")]
+    surveys = [word for word in words if not word.startswith("node=")]
+    files_bench.bench(ROOT, Path(results), surveys, *node)
+
+
 def bench_presentation(results: str, truths: str, *names: str) -> None:
     """Regular drawings of simulated drives against their truths."""
     import presentation_bench
@@ -332,6 +346,7 @@ def compare_realistic(before: str, after: str) -> None:
 
 APART: dict[str, Callable[..., None]] = {
     "models": bench_models,
+    "files": bench_files,
     "presentation": bench_presentation,
     "realistic": bench_realistic,
     "compare_realistic": compare_realistic,

@@ -1,10 +1,14 @@
 """The regular drawing on its sheet: what is drawn, dimensioned and said."""
 
+import io
+
+import ezdxf
 import numpy as np
 import pytest
 import shapely
 
 from helpers import floorplan_making, quarter_disc
+from scanplan.exports import dxf
 from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
@@ -37,6 +41,11 @@ def test_walls_are_solid_with_openings_cut_out_and_rooms_left_free():
     # 7.6 x 3.4 m around, the east wall 0.3 m thick, less rooms; less two doors and a window
     expected_m2 = 7.6 * 3.4 - 12 - 9 - 0.2 * 1.0 - 0.1 * 0.9 - 0.2 * 1.2
     assert ground(composed(), "poche").area == pytest.approx(expected_m2, abs=1e-6)
+
+
+def test_walls_are_as_black_in_cad_as_on_paper():
+    document = ezdxf.filemanagement.read(io.StringIO(dxf.format_dxf(composed())))
+    assert {hatch.dxf.color for hatch in document.modelspace().query("HATCH")} == {7}
 
 
 def test_walls_are_straight_where_outlines_of_rooms_waver_by_a_millimetre():

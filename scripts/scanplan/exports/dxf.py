@@ -22,12 +22,13 @@ from scanplan.exports.sheet.composition import Sheet, surround_symbol
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Dimension, Facts, Mark, Stamp, Symbol, Word
 from scanplan.exports.sheet.paper import Page
-from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
+from scanplan.exports.sheet.styles import INK, LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.symbols import block_scales, choose_block, symbol_angle_deg
 from scanplan.exports.sheet.title import TITLE_TAG
 from scanplan.types import FloatArray
 
 _HATCHES = {"wall": "SOLID", "poche": "SOLID", "assumed": "ANSI31", "scale-bar": "SOLID"}
+_INK_COLOUR = 7  # of the index of colours of CAD: black on white, white on black
 _ALIGNMENTS = {
     0.0: TextEntityAlignment.MIDDLE_LEFT,
     0.5: TextEntityAlignment.MIDDLE_CENTER,
@@ -269,7 +270,8 @@ def _add_hatch(space: BaseLayout, mark: Mark, factor: float, per_mm: float) -> N
     hatch = space.add_hatch(dxfattribs={"layer": "A-WALL-PATT"})
     pattern = _HATCHES[mark.kind]
     if pattern == "SOLID":
-        hatch.set_solid_fill(color=LAYERS["A-WALL-PATT"].colour)
+        is_ink = STYLES[mark.kind].fill == INK
+        hatch.set_solid_fill(color=_INK_COLOUR if is_ink else LAYERS["A-WALL-PATT"].colour)
     else:
         hatch.set_pattern_fill(
             pattern, scale=Paper.HATCH * per_mm / 3.175
