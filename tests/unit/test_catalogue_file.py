@@ -77,3 +77,16 @@ def test_a_mistake_is_named_with_file_and_entry(tmp_path, old, new, named):
 def test_a_catalogue_that_is_not_there_is_told(tmp_path):
     with pytest.raises(StageError, match="does not exist"):
         read_catalogue(tmp_path / "none.yaml")
+
+
+def test_a_region_has_a_catalogue_of_ours():
+    read = read_catalogue("north_america")
+    # half an inch of board on both sides of a stud of 3 1/2 inches; a door of three feet
+    assert read["walls"]["stud 2x4, 4 1/2 in"] == pytest.approx(4.5 * 0.0254, abs=5e-4)
+    assert read["doors"]["door 3-0"] == pytest.approx(3 * 0.3048, abs=5e-4)
+    assert read["classification"]["system"] == "OmniClass"
+
+
+def test_a_region_that_we_have_not_is_told_with_those_that_we_have():
+    with pytest.raises(StageError, match="atlantis does not exist; give one of north_america"):
+        read_catalogue("atlantis")
