@@ -55,14 +55,15 @@ def export_plan(
     in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
     drawn = scale_floorplan(in_map)
     site = find_site(drawn.georeference, settings["site"])
+    locale = make_locale(settings["units"], told.get("words"))
     facts = summarise_survey(
         evidence,
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
-        locale=make_locale(settings["units"], told.get("words")),
-        frame=title.state_frame(site, drawn.georeference),
+        locale=locale,
+        frame=title.state_frame(site, drawn.georeference, locale),
     )
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)

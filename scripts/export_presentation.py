@@ -51,6 +51,7 @@ def export_presentation(
     in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
     measured = scale_floorplan(in_map)
     site = find_site(measured.georeference, settings["site"])
+    locale = make_locale(settings["units"], told.get("words"))
     facts = summarise_survey(
         tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True),
         project=settings["project"] or "",
@@ -58,8 +59,8 @@ def export_presentation(
         version=version,
         sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
         north_deg=site.north_deg,
-        locale=make_locale(settings["units"], told.get("words")),
-        frame=state_frame(site, measured.georeference),
+        locale=locale,
+        frame=state_frame(site, measured.georeference, locale),
     )
     drafting = make_draft_settings(settings["max_change_m"], catalogue)
     regular, drafted = draft_plan(measured, drafting)

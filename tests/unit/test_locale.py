@@ -1,6 +1,7 @@
 """Sheets in the receiver's units and language, and the files of words that say them."""
 
 import io
+import re
 
 import ezdxf
 import pytest
@@ -63,6 +64,11 @@ def test_numbers_and_dates_are_as_written_there(language):
 )
 def test_lengths_and_areas_are_in_the_unit_that_is_asked_for(unit, expected):
     assert expected <= set(texts(sheets(Locale(unit))[1]))
+
+
+def test_in_feet_no_length_stays_metric():
+    said = [text for sheet in sheets(Locale("ft")) for text in texts(sheet)]
+    assert [text for text in said if re.search(r"\d (m|cm|mm)\b|m²", text)] == []
 
 
 @pytest.mark.parametrize(

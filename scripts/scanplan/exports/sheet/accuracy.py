@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.stage.witness_table import PLAN
 from scanplan.validation.verdict import judge_plan
@@ -31,7 +32,9 @@ class SensorErrors:
     scale: float = 0.0
 
 
-def state_accuracy(plan: FloorPlan, sensor: SensorErrors = SensorErrors()) -> str:
+def state_accuracy(
+    plan: FloorPlan, sensor: SensorErrors = SensorErrors(), locale: Locale = ENGLISH
+) -> str:
     """Return the class of a plan's walls by the standard deviations of their offsets.
 
     Their mean square counts, by length of wall: of errors of such spread 95 % are below the limit.
@@ -56,8 +59,5 @@ def state_accuracy(plan: FloorPlan, sensor: SensorErrors = SensorErrors()) -> st
     # 95 % of a normal distribution lie within as many standard deviations
     error_m, of_sensor_m = 1.96 * np.sqrt([square_m2 + sensor_m2, sensor_m2])
     name = next((n for n, limit_m in CLASSES_M.items() if error_m <= limit_m), "LOA10")
-    return f"{name}: walls ± {_in_mm(error_m)} (95 %), of which the sensor ± {_in_mm(of_sensor_m)}"
-
-
-def _in_mm(error_m: float) -> str:
-    return f"{1000 * error_m:.{1 if error_m < 0.01 else 0}f} mm"
+    error, of_sensor = map(locale.error, (error_m, of_sensor_m))
+    return f"{name}: walls ± {error} (95 %), of which the sensor ± {of_sensor}"

@@ -10,6 +10,7 @@ from typing import Any
 _FOOT_M = 0.3048
 _INCH_M = _FOOT_M / 12
 _INCH_PARTS = 4  # of an inch, 6 mm: as fine as lengths are stated in metres
+_FINE_M = 0.01  # of errors: less is stated to a tenth of a millimetre
 _PER_M = {"m": 1.0, "cm": 100.0, "mm": 1000.0}
 _DECIMALS = {"m": 2, "cm": 0, "mm": 0}
 _NUMBER = r"[~+-]?\d[\d.,'\" /%-]*"
@@ -90,6 +91,17 @@ class Locale:
         if self.is_imperial:
             return f"{length_m / _INCH_M:.1f} in".replace(".", self.decimal)
         return f"{1000 * length_m:.0f} mm"
+
+    def error(self, length_m: float) -> str:
+        """Return what is not known of a length: in tenths of a millimetre below 10 mm, or inches.
+
+        >>> Locale(decimal=",").error(0.0042), Locale().error(0.022), Locale("ft").error(0.022)
+        ('4,2 mm', '22 mm', '0.87 in')
+        """
+        said = f"{1000 * length_m:.{1 if length_m < _FINE_M else 0}f} mm"
+        if self.is_imperial:
+            said = f"{length_m / _INCH_M:.2f} in"
+        return said.replace(".", self.decimal)
 
     @property
     def fine(self) -> tuple[float, str]:

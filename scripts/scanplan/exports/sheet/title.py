@@ -97,14 +97,14 @@ def summarise_survey(evidence: Columns, **stated: Any) -> SheetFacts:
     return replace(SheetFacts("", "", state_date(int(t_ns.min())), n_scans), **stated)
 
 
-def state_frame(site: Site, measured: GeoReference | None) -> str:
+def state_frame(site: Site, measured: GeoReference | None, locale: Locale = ENGLISH) -> str:
     """Return in words where a map lies on earth, and how well reference points agree with it."""
     if not site.is_placed:
         return ""
     place = f"origin E {site.east_m:.3f} N {site.north_m:.3f}, x axis {site.turn_deg:.4f}° from E"
     if measured is None:
         return f"{site.crs}: {place}"
-    return f"{site.crs}: {place}; residual {1000 * measured.residual_m:.0f} mm"
+    return f"{site.crs}: {place}; residual {locale.deviation(measured.residual_m)}"
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -129,7 +129,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
         [("Drawing", f"{facts.drawing}{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
-            ("Accuracy", state_accuracy(plan, facts.sensor), 2),
+            ("Accuracy", state_accuracy(plan, facts.sensor, page.locale), 2),
         ],
         [
             ("Made of", say_count(facts.n_scans, "scan"), 1),
