@@ -88,6 +88,16 @@ def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     assert [symbol.element for symbol in sheet.symbols] == ["glass-0", "glass-2"]
 
 
+def test_a_pane_in_no_wall_is_drawn_as_far_as_it_bounds_a_room():
+    # 2 m beyond the room that it bounds, which ends at x 7.1
+    row = ((4.1, -0.2, 9.1, -0.2), -1, "glass", 0.0, 2.5, 1, -1)
+    sheet = composed(walls=floorplan_making.walls([]), openings=floorplan_making.openings([row]))
+    (pane,) = sheet.symbols
+    assert pane.ends_m[0] == pytest.approx([4.1, -0.2])
+    # and what a thick wall at the corner would take
+    assert 7.1 <= pane.ends_m[1, 0] <= 7.4 and pane.ends_m[1, 1] == pytest.approx(-0.2)
+
+
 def test_a_hole_in_a_wall_of_no_room_is_drawn_and_one_in_a_room_is_not():
     wall = ((8.0, 0, 8.0, 3), 0.2, 9, 10, "observed")
     rows = [

@@ -30,6 +30,7 @@ from scanplan.store import schemas
 from scanplan.types import Array, BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
+_PANES = ("glass", "window")
 _PLAIN = {"gap": "passage"}
 """Openings drawn as others: what lies in them is said on the sheet of what was measured."""
 
@@ -147,7 +148,8 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     """Yield openings of walls and between rooms.
 
     None is a pane in no wall that bounds no room, whose floor may end as far before it as before a
-    thick wall, nor what has no leaf or pane and leads from a room into itself.
+    thick wall, nor what has no leaf or pane and leads from a room into itself. Those that bound one
+    are drawn as far as they do.
     """
     leaves = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
@@ -158,13 +160,22 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     # a hole in a wall of no room is one all the same
     is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
     is_none |= (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
-    for symbol, is_left_out in zip(content.list_symbols(plan), is_none.tolist(), strict=True):
-        if is_left_out:
+    for row, symbol in enumerate(content.list_symbols(plan)):
+        if is_none[row]:
             continue
-        if symbol.kind == "door":
+        if plan.hosts[row] < 0 and symbol.kind in _PANES:
+            yield replace(symbol, ends_m=_limit_line(symbol.ends_m, along[row]))
+        elif symbol.kind == "door":
             yield draw_swing(symbol, leaves)
         else:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
+
+
+def _limit_line(line_m: FloatArray, along: BaseGeometry) -> FloatArray:
+    """Return a line (2, 2) from the first to the last of its places that lie on some geometry."""
+    way_m = line_m[1] - line_m[0]
+    shares = (shapely.get_coordinates(along) - line_m[0]) @ way_m / (way_m @ way_m)
+    return line_m[0] + np.array([[shares.min()], [shares.max()]]) * way_m
 
 
 def _find_doubles(plan: FloorPlan) -> BoolArray:
@@ -174,7 +185,7 @@ def _find_doubles(plan: FloorPlan) -> BoolArray:
     """
     lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings))
     widths_m = np.asarray(plan.openings["width_m"], float)
-    is_pane = np.isin(plan.openings["type"], ("glass", "window")) & (plan.hosts < 0)
+    is_pane = np.isin(plan.openings["type"], _PANES) & (plan.hosts < 0)
     grounds = overlays.buffer_shapes(lines, CORNER_M, cap_style="flat")
     bodies = overlays.unite_areas(plan.bodies)
     is_double = np.zeros(len(lines), bool)
