@@ -26,7 +26,8 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
 
 Without a name all of them but wall_quality, which takes minutes, plans, which measures the surveys
 that `make compare` has finished under results/, and validation, which damages the plans there; a
-FOLDER holds the dataset folders with the truths of those it did not simulate.
+FOLDER holds the dataset folders with the truths of those it did not simulate, or is one in which
+`realistic` has finished.
 
 `pipeline` runs the default target on a drive of 6,000 scans, or of 60,000 in ten bags (big; or in
 as many bags as are said, as big=3), with the code of the last commit, after that of other commits
@@ -163,7 +164,11 @@ def bench_validation(folders: Sequence[Path] = ()) -> None:
     """Prediction of left-out scans against the truth, over damaged plans of finished surveys."""
     import validation_bench
 
-    validation_bench.bench(ROOT / "results", folders, SETTINGS)
+    realistic = [folder for folder in folders if (folder / "code/results").is_dir()]
+    for folder in realistic:
+        validation_bench.bench(folder / "code/results", [folder / "truths"], SETTINGS)
+    if not realistic:
+        validation_bench.bench(ROOT / "results", folders, SETTINGS)
 
 
 def record_guard(revision: str, folder: str, *names: str) -> None:

@@ -27,6 +27,7 @@ _PIECE_M = 1.0
 _SIDE_M = 0.6  # farther is no side of the same wall
 _CELL_M = 0.05  # of the evaluation's bitmap
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+_LEAST_F1 = 0.5  # of a plan as it is, in the frame of the truth
 _WITHIN = ("005m", "010m", "015m")
 
 
@@ -45,10 +46,13 @@ def bench(results: Path, surveys: Sequence[Path], settings: Settings) -> None:
         truth = find_truth(folder, surveys)
         if truth is None:
             print(f"validation, {folder.name}: its truth is not known", flush=True)
-        else:
-            survey = _read_survey(folder, truth, settings)
-            _bench_damage(folder.name, survey)
-            _bench_pieces(folder.name, survey)
+            continue
+        survey = _read_survey(folder, truth, settings)
+        if _measure_quality(survey.plan, survey.floor) < _LEAST_F1:
+            print(f"validation, {folder.name}: its poses are in a frame of their own", flush=True)
+            continue
+        _bench_damage(folder.name, survey)
+        _bench_pieces(folder.name, survey)
 
 
 def _read_survey(folder: Path, truth: Path, settings: Settings) -> Survey:
