@@ -1,22 +1,29 @@
 """Write the report of a dataset: one page that opens offline."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.project import code_files, corrections_file
 from scanplan.recordings.motion import pose_kind
-from scanplan.report import point_image, solid_view
-from scanplan.report.facts import PredictionFacts, RunFacts, Storey, SurveyFacts, VisitFacts
+from scanplan.report import point_image, sights, solid_view
+from scanplan.report.facts import (
+    Pictures,
+    PredictionFacts,
+    RunFacts,
+    Storey,
+    SurveyFacts,
+    VisitFacts,
+)
 from scanplan.report.page import report_page
 from scanplan.report.summary import summarise_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.stage.run_times import read_job_costs
 from scanplan.store import atomic, lineage, registered_scans, schemas, tables
-from scanplan.types import Columns, FilePath, FloatArray, Settings
+from scanplan.types import Columns, FilePath, Settings
 
 _FAILED = "the stage that works it out failed"
 _NOT_SIZED = (".svg", ".html", ".txt")
@@ -55,8 +62,7 @@ def write_report(
     """
     plan = floorplan_files.read_floorplan(files, name)
     survey = _read_survey(files, settings["selection"]["stop"])
-    points = point_image.draw_point_image(_read_chosen_scans(files["scans"], survey), plan)
-    in_space = solid_view.pack_view(plan, _read_chosen_scans(files["scans"], survey))
+    drawn = _draw_pictures(plan, survey, files["scans"])
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]
     folder = Path(output).parent
     beside = [os.path.relpath(path, folder) for path in files["results"]]
@@ -78,7 +84,7 @@ def write_report(
         version=f"Made by {code_files.state_version()}.",
     )
     sources = {Path(path).name: text for path, text in _read_texts(files["page"])}
-    text = report_page(sources, plan, survey, points, in_space, run)
+    text = report_page(sources, plan, survey, drawn, run)
     atomic.write_text(output, text)
     if short is not None:
         atomic.write_text(short, summarise_survey(plan, survey))
@@ -86,11 +92,19 @@ def write_report(
     log.log_line(f"write_report: {len(text) / 1e6:.1f} MB, {survey.chosen} scans, {summary}")
 
 
-def _read_chosen_scans(path: FilePath, survey: SurveyFacts) -> Iterator[tuple[int, FloatArray]]:
+def _draw_pictures(plan: floorplan.FloorPlan, survey: SurveyFacts, path: FilePath) -> Pictures:
     chosen_ids = survey.selection["scan_id"][: survey.chosen]
     # a selection of another run may name scans that were not kept
     registered_scans.sensor_places(survey.registration, chosen_ids)
-    return tables.ScanStore(path).scans(chosen_ids)
+    registered = registered_scans.select_kept_scans(survey.registration, "registration")
+    store = tables.ScanStore(path)
+    in_order = store.scans(sorted(chosen_ids.tolist()))
+    return Pictures(
+        points=point_image.draw_point_image(store.scans(chosen_ids), plan),
+        in_space=solid_view.pack_view(plan, store.scans(chosen_ids)),
+        sights=sights.find_sights(plan, in_order, registered, planar=store.planar),
+        way_m=sights.trace_way(registered),
+    )
 
 
 def _read_survey(files: Mapping[str, Any], stop: Settings) -> SurveyFacts:

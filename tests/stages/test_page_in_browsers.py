@@ -20,6 +20,7 @@ from helpers.pages import click, entries, in_sight, middle_of, on_screen, press,
 from helpers.serving import serving
 from scanplan.project import corrections_file
 from scanplan.project.run.edit_session import EditSession
+from scanplan.store import tables
 
 PHONE = {"width": 360, "height": 640}
 FIRST_PAINT_MS = 1500
@@ -258,6 +259,122 @@ def luminance(colour):
     shares = np.array(colour) / 255
     linear = np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)
     return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
+# --- what was measured at a question ---
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """A report with one question, of the north wall of the small room: one scan looks at it."""
+    folder = tmp_path_factory.mktemp("measured")
+    files = report_making.files(folder)
+    wall_m = np.array([(x, 3.0, z) for x in np.arange(4.2, 7.0, 0.1) for z in (0.6, 1.2, 1.8)])
+    with tables.open_scan_writer(files["scans"], planar=False) as write:
+        for scan_id in report_making.SCAN_IDS[:4]:
+            write(scan_id, wall_m if scan_id == 12 else report_making.SCANNED_M)
+    return report_making.written(folder, files)
+
+
+@pytest.fixture
+def asked(either, measured):
+    """The page with that question open."""
+    either.open(measured.as_uri())
+    either.run("localStorage.clear()")
+    either.open(measured.as_uri())
+    press(either, "Start", "#walk")
+    yield either
+    assert complaints_of(either) == []
+
+
+def test_a_question_shows_returns_and_rays_from_where_it_was_seen(asked):
+    assert in_sight(asked, "#cutout") == 1
+    n_rays = 28 * 3
+    for part in ("#sight", "#cutout g"):
+        returns = asked.run(f"document.querySelector('{part} .return').getAttribute('d')")
+        assert returns.count("M") == returns.count(" -3.00h0") == n_rays
+    stood = (
+        "(c => [c.cx.baseVal.value, c.cy.baseVal.value])(document.querySelector('#sight .stood'))"
+    )
+    assert asked.run(stood) == pytest.approx([6.03, -1.0], abs=1e-3)
+    # the third of four scans on the way, 1.2 s after the first
+    said = text_of(asked, "#seen-said")
+    assert "from 2.1 m away" in said and "of 5 m along the sensor's way" in said
+    assert str(n_rays) in asked.run("document.getElementById('cutout').ariaLabel")
+    # as on the plan, in the style of the plan
+    style = "getComputedStyle(document.querySelector('{} .wall')).fill"
+    assert asked.run(style.format("#cutout")) == asked.run(style.format("#plan"))
+
+
+# where the picture has colours of points, which are green in part: of its width and its height
+PAINTED = """(picture => {
+  const { width, height } = picture;
+  const copy = Object.assign(document.createElement('canvas'), { width, height });
+  const context = copy.getContext('2d', { willReadFrequently: true });
+  context.drawImage(picture, 0, 0);
+  const { data } = context.getImageData(0, 0, width, height);
+  const places = [];
+  for (let i = 0; i < width * height; i++) {
+    if (data[4 * i + 1] > 60) places.push([(i % width) / width, Math.floor(i / width) / height]);
+  }
+  return places;
+})(document.getElementById('from-there'))"""
+
+
+def test_points_are_painted_as_they_looked_from_there(asked):
+    settle(asked, f"{PAINTED}.length > 0")
+    across, down = np.transpose(asked.run(PAINTED))
+    # all of the wall is in the picture, to both sides of its middle, 0.6 m to 1.8 m of 2.5 m up
+    assert across.mean() == pytest.approx(0.5, abs=0.1) and np.ptp(across) > 0.4
+    assert down.min() < 0.5 < down.max() and 0.1 < np.ptp(down) < 0.6
+
+
+def test_pictures_need_no_webgl_and_go_with_the_walk(asked):
+    asked.load(
+        "HTMLCanvasElement.prototype.getContext = (was => function (kind, ...more) {"
+        " return kind === 'webgl2' ? null : was.call(this, kind, ...more); })"
+        "(HTMLCanvasElement.prototype.getContext)"
+    )
+    press(asked, "Stop", "#walk")
+    assert (
+        in_sight(asked, "#seen") == 0 and asked.run("document.querySelector('#sight .ray')") is None
+    )
+    press(asked, "Start", "#walk")
+    assert in_sight(asked, "#cutout") == 1 and in_sight(asked, "#from-there") == 1
+
+
+def test_one_stands_there_in_space_and_comes_back(asked):
+    needs_webgl(asked)
+    press(asked, "Stand there in 3-D", "#walk")
+    settle(asked, "solid.isOn() && document.getElementById('stand').textContent.includes('Back')")
+    eye = "solid.scene().camera.position.toArray().map((m, i) => m + solid.scene().middle[i])"
+    assert asked.run(eye) == pytest.approx([6.03, 1.0, 0.4], abs=1e-3)
+    ahead = "solid.scene().camera.getWorldDirection(new THREE.Vector3()).toArray()"
+    # to the middle of the wall, (5.575, 3.1, 1.25)
+    way_m = np.array([5.575, 3.1, 1.25]) - [6.03, 1.0, 0.4]
+    assert asked.run(ahead) == pytest.approx(way_m / np.linalg.norm(way_m), abs=1e-3)
+    press(asked, "Back to the plan", "#walk")
+    assert not asked.run("solid.isOn()") and in_sight(asked, "#plan") == 1
+
+
+def test_on_a_phone_pictures_lie_between_plan_and_question(either, measured):
+    either.open(measured.as_uri(), **PHONE)
+    press(either, "Start", "#walk")
+    box = (
+        "(r => [r.top, r.bottom, r.width, r.height])"
+        "(document.querySelector('{}').getBoundingClientRect())"
+    )
+    plan, cutout, picture, walk = (
+        either.run(box.format(part)) for part in ("#view", "#cutout", "#from-there", "#walk")
+    )
+    assert plan[1] <= cutout[0] and cutout[1] <= walk[0] and picture[1] <= walk[0]
+    assert min(cutout[2], picture[2]) > 150 and min(cutout[3], picture[3]) > 60
+    assert either.run(box.format("#stand"))[3] >= 44
+    assert either.run("document.documentElement.scrollWidth") <= PHONE["width"]
+
+
+@needs_axe
+def test_axe_finds_nothing_at_a_question_with_pictures(asked):
+    asked.load(find_axe().read_text())
+    assert asked.run(VIOLATIONS) == []
 
 
 # --- in space ---

@@ -82,7 +82,7 @@ REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "edit.css"),
     *("page.js", "edits.js", "drawn_edits.js", "tools.js", "choices.js"),
     *("elements.js", "saying.js", "solid_edits.js", "solid.js", "three.js"),
-    *("faults.js", "walk.js", "save.js"),
+    *("faults.js", "seen.js", "walk.js", "save.js"),
 )
 CHANGES_PAGE = page_files("changes.html.j2", "changes.css", "page.css")
 FLOORS_PAGE = page_files("floors.html.j2", "overview.css")

@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+from scanplan.report.point_image import PointImage
 from scanplan.stage.run_times import JobCost
-from scanplan.types import Columns, Settings
+from scanplan.types import Columns, FloatArray, Settings
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,28 @@ class SurveyFacts:
     plan_measures: Columns | None = None
     wall_measures: Columns | None = None
     is_drifting: bool = False
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What the page draws of the scans.
+
+    Attributes
+    ----------
+    points : point_image.PointImage
+        What the chosen scans saw, from above.
+    in_space : dict
+        The same and the plan in space, see `solid_view.pack_view`.
+    sights : dict
+        From where doubtful elements were seen best, see `sights.find_sights`.
+    way_m : (n, 2) float
+        The sensor's way, map frame.
+    """
+
+    points: PointImage
+    in_space: Mapping[str, Any]
+    sights: Mapping[str, Any]
+    way_m: FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -21,9 +20,8 @@ from scanplan.report import (
     walk,
     wording,
 )
-from scanplan.report.facts import RunFacts, SurveyFacts
+from scanplan.report.facts import Pictures, RunFacts, SurveyFacts
 from scanplan.report.plan_view import growth, next_visit, plan_svg
-from scanplan.report.point_image import PointImage
 from scanplan.store import registered_scans
 from scanplan.types import FloatArray, Settings
 from scanplan.validation import doubts, verdict
@@ -63,8 +61,7 @@ def report_page(
     sources: Mapping[str, str],
     plan: floorplan.FloorPlan,
     survey: SurveyFacts,
-    points: PointImage,
-    in_space: Mapping[str, Any],
+    drawn: Pictures,
     run: RunFacts,
 ) -> str:
     """Return the page.
@@ -73,10 +70,6 @@ def report_page(
     ----------
     sources : dict of str to str
         File name to text of `page.html.j2` and of all that it asks for.
-    points : point_image.PointImage
-        What the chosen scans saw, from above.
-    in_space : dict
-        The same and the plan in space, as `solid_view.pack_view` returns them.
 
     Returns
     -------
@@ -89,7 +82,7 @@ def report_page(
     n_scans = len(survey.selection["rank"])
     found = doubts.list_doubts(plan)
     start_m = _find_start_m(survey)
-    drawn = _plan_svg(plan, survey, points, of_plan["merge"])
+    plan_text = _plan_svg(plan, survey, drawn, of_plan["merge"])
     return templates.render_template(
         sources,
         "page.html.j2",
@@ -115,7 +108,7 @@ def report_page(
         n_doubts=len(found),
         nearly=doubts.list_nearly(plan),
         confidence=wording.confidence_note(plan),
-        plan=Markup(drawn),
+        plan=Markup(plan_text),
         opening_kinds=_list_opening_kinds(plan),
         visit=survey.visit.summary,
         visit_map=Markup(next_visit.draw_visit_map(plan, survey.visit)),
@@ -140,10 +133,11 @@ def report_page(
         sizes=page_tables.size_table(run.sizes),
         settings=page_tables.settings_table(run.settings),
         version=run.version,
-        in_space=in_space,
-        top_m=math.ceil(in_space["height_m"] * 20) / 20,
+        in_space=drawn.in_space,
+        sights=drawn.sights,
+        top_m=math.ceil(drawn.in_space["height_m"] * 20) / 20,
         three=solid_view.pack_script(sources["three.js"]),
-        data=_script_data(survey, run, objective, drawn)
+        data=_script_data(survey, run, objective, plan_text)
         | {"unmatched": list(plan.unmatched_corrections)},
     )
 
@@ -163,7 +157,7 @@ def _list_opening_kinds(plan: floorplan.FloorPlan) -> list[tuple[str, str]]:
 
 
 def _plan_svg(
-    plan: floorplan.FloorPlan, survey: SurveyFacts, points: PointImage, merging: Settings
+    plan: floorplan.FloorPlan, survey: SurveyFacts, drawn: Pictures, merging: Settings
 ) -> str:
     """Draw the plan, its growth, and what each chosen scan shows."""
     selected_ids = survey.selection["scan_id"][: survey.chosen]
@@ -183,7 +177,9 @@ def _plan_svg(
     lines_m = floorplan.centrelines_m(segments)
     shown_m = [lines_m[rank == k] for k in range(1, survey.chosen + 1)]
     positions_m = registered_scans.sensor_places(survey.registration, selected_ids)
-    return plan_svg.growing_plan_svg(plan, stretches, positions_m, shown_m, points)
+    return plan_svg.growing_plan_svg(
+        plan, stretches, positions_m, shown_m, drawn.points, drawn.way_m
+    )
 
 
 def _curves(survey: SurveyFacts, of_plan: Settings, objective: str) -> dict[str, chart.Curve]:

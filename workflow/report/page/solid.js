@@ -20,9 +20,9 @@ const solid = (() => {
 
   // --- what is drawn ---
   const data = stored("solid-data");
-  const places = (steps, stepM, lowM = data.low_m) => {
+  const places = (steps, stepM, lowM = data.low_m, middle = scene.middle) => {
     const xyz = new Float32Array(steps.length);
-    for (let i = 0; i < steps.length; i++) xyz[i] = lowM[i % 3] + steps[i] * stepM - scene.middle[i % 3];
+    for (let i = 0; i < steps.length; i++) xyz[i] = lowM[i % 3] + steps[i] * stepM - middle[i % 3];
     return xyz;
   };
   async function makeBodies() {
@@ -67,13 +67,16 @@ const solid = (() => {
   }
   // from blue at the floor to yellow at the ceiling: their lightness tells them apart, too
   const ramp = [[47, 75, 124], [31, 150, 139], [253, 190, 60]];
+  const steps = 256; // of height that have a colour each
+  const shades = Array.from({ length: steps }, (_, i) => {
+    const share = (2 * i) / steps;
+    const [low, high] = [ramp[Math.floor(share)], ramp[Math.floor(share) + 1]];
+    return low.map((from, k) => from + (share % 1) * (high[k] - from));
+  });
+  const colourAt = (up) => shades[Math.max(0, Math.min(steps - 1, Math.floor((steps * up) / data.height_m)))];
   function showPoints(xyz, n, nAll) {
     const colours = new Uint8Array(xyz.length);
-    for (let i = 0; i < xyz.length; i += 3) {
-      const share = 2 * Math.max(0, Math.min(0.999, xyz[i + 2] / data.height_m));
-      const [low, high] = [ramp[Math.floor(share)], ramp[Math.floor(share) + 1]];
-      for (let k = 0; k < 3; k++) colours[i + k] = low[k] + (share % 1) * (high[k] - low[k]);
-    }
+    for (let i = 0; i < xyz.length; i += 3) colours.set(colourAt(xyz[i + 2]), i);
     const cloud = new THREE.BufferGeometry();
     cloud.setAttribute("position", new THREE.BufferAttribute(xyz, 3));
     cloud.setAttribute("color", new THREE.BufferAttribute(colours, 3, true));
@@ -83,8 +86,8 @@ const solid = (() => {
     note.textContent = `${data.heights} ${number(n)} of ${number(nAll)} points. Orange is to be verified. Changes: blue with + or ✎, and red wire with ✗ is to go; walls are cut and joined once the plan is made anew.`;
     draw();
   }
-  async function readPoints() {
-    const { n, n_all: nAll, step_m: stepM, data: packed } = data.points;
+  async function unpackPoints() {
+    const { n, data: packed } = data.points;
     const bytes = new Uint8Array(await (await unpack(packed)).arrayBuffer());
     const steps = new Uint16Array(3 * n);
     for (let axis = 0; axis < 3; axis++) {
@@ -95,7 +98,15 @@ const solid = (() => {
         steps[3 * i + axis] = step;
       }
     }
-    showPoints(places(steps, stepM), n, nAll);
+    return steps;
+  }
+  let unpacked = null;
+  const readSteps = () => (unpacked ??= unpackPoints());
+  // x and y of the map and height above the floor, of each point after the other
+  const points = async () => places(await readSteps(), data.points.step_m, data.low_m, [0, 0, 0]);
+  async function readPoints() {
+    const { n, n_all: nAll, step_m: stepM } = data.points;
+    showPoints(places(await readSteps(), stepM), n, nAll);
   }
   async function fetchPoints() {
     allPoints.disabled = true;
@@ -164,6 +175,12 @@ const solid = (() => {
     scene.camera.position.set(...from);
     scene.controls.update();
     draw();
+  }
+  // from a place of the map towards another: a little before it, as what turns goes round what is looked at
+  function standAt(from, to) {
+    if (!isOn) return;
+    const [eye, aim] = [from, to].map((place) => place.map((m, i) => m - scene.middle[i]));
+    look(eye, eye.map((m, i) => m + (aim[i] - m) / 2));
   }
   // as near as all of it is seen, in a wide view and in a narrow one
   function lookAtAll() {
@@ -320,6 +337,7 @@ const solid = (() => {
     for (const part of [canvas, bar, note, byId("space-marks")]) part.hidden = !isOn;
     byId("growing").hidden = isOn;
     pressed.setAttribute("aria-pressed", String(isOn));
+    dispatchEvent(new Event("space"));
   }
   function hide() {
     if (!isOn) return;
@@ -345,5 +363,5 @@ const solid = (() => {
     const act = tools[name];
     tools[name] = (...given) => { hide(); return act(...given); };
   }
-  return { show, hide, isOn: () => isOn, elementAt, scene: () => scene };
+  return { show, hide, isOn: () => isOn, isMissing, standAt, points, colourAt, elementAt, scene: () => scene };
 })();

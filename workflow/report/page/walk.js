@@ -30,9 +30,10 @@
     if (isLooked) look();
   }
   function look() {
-    const [x, y] = edits.placeOf(ask[at].element);
+    const [x, y] = seen.placeOf(ask[at].element) ?? edits.placeOf(ask[at].element);
     lookAt({ x, y: -y });
     elements.pick(ask[at].element);
+    seen.show(ask[at].element);
   }
   function next() {
     const to = open(at + 1) >= 0 ? open(at + 1) : open();
@@ -60,6 +61,7 @@
     progress.max = ask.length;
     for (const { item, element } of all) item.classList.toggle("answered", edits.entryOf(element) !== undefined);
     section.classList.toggle("done", left === 0);
+    if (left === 0 || !isOn) seen.hide();
     const rest = all.filter((each) => !answer(each)).length - left;
     if (left === 0 && rest && ask === main) {
       question.textContent = `All that matter most are answered. ${edits.count(rest, "more thing")} may be looked at.`;

@@ -25,6 +25,7 @@ def growing_plan_svg(
     positions_m: FloatArray,
     shown_m: Sequence[FloatArray],
     points: PointImage,
+    way_m: FloatArray,
 ) -> str:
     """Return the plan as the text of an SVG element, one user unit a metre, y downwards.
 
@@ -38,6 +39,8 @@ def growing_plan_svg(
         The segments that each of them shows.
     points : point_image.PointImage
         What the scans saw, under it all.
+    way_m : (n, 2) float
+        The sensor's way.
 
     Returns
     -------
@@ -57,6 +60,8 @@ def growing_plan_svg(
         '<g id="finished">', *draw_walls(plan), *draw_openings(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
         '<g id="edits"></g>',
+        '<g id="way">', draw_path(way_m[None], 'class="way"'), "</g>",
+        '<g id="sight"></g>',
         '<g id="growth">', *_stretches(stretches), "</g>",
         '<g id="shown">', *_shown(shown_m), "</g>",
         '<g id="scans">', *_scans(positions_m), "</g>",
