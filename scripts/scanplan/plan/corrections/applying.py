@@ -289,8 +289,12 @@ def _check_near(rows: PlanRows, correction: Correction, line_m: FloatArray) -> N
         raise StageError(f"{correction.entry}: {fault} drawn; give its places in metres of the map")
 
 
+def _change_wall(rows: PlanRows, wall: Row, correction: Correction) -> str | None:
+    return changed.change_wall(rows, wall, correction, state_said(correction))
+
+
 _CHANGES = {
-    "wall": changed.change_wall,
+    "wall": _change_wall,
     "opening": changed.change_opening,
     "room": _change_room,
     "furniture": _change_thing,

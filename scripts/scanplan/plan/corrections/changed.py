@@ -5,7 +5,7 @@ import numpy as np
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added, named, things
+from scanplan.plan.corrections import added, following, named, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import Correction
 from scanplan.store import schemas
@@ -19,8 +19,10 @@ _LEAST_M = 0.01
 """Of what is left of a face or an opening on a wall that was moved: less is rounding."""
 
 
-def change_wall(rows: PlanRows, wall: Row, correction: Correction) -> str | None:
+def change_wall(rows: PlanRows, wall: Row, correction: Correction, said: str) -> str | None:
     """Move a wall, give it a thickness, or take it for furniture.
+
+    Outlines of rooms go with its sides.
 
     Returns
     -------
@@ -35,9 +37,16 @@ def change_wall(rows: PlanRows, wall: Row, correction: Correction) -> str | None
         return "is a curved wall, which is neither moved nor made thicker; remove it, and add walls"
     set_height(rows, wall, correction.height_m)
     if correction.line_m is not None:
+        before_m = _sides_of(wall)
         _move_wall(rows, wall, np.array(correction.line_m))
+        _let_follow(rows, before_m, wall, said)
     if correction.thickness_m is not None:
+        before_m = _sides_of(wall)
+        is_known = np.isfinite(wall["thickness_m"])
         _set_thickness(rows, wall, correction.thickness_m)
+        # what had none keeps the side that was seen
+        if is_known:
+            _let_follow(rows, before_m, wall, said)
     return None
 
 
@@ -192,6 +201,18 @@ def _shift(rows: PlanRows, wall: Row, off_m: float, thickness_m: float) -> None:
         across_m = (added.ends_of(face) - line_m[0]) @ left
         by_m = np.sign(across_m) * thickness_m / 2 - across_m
         face |= added.end_columns(added.ends_of(face) + by_m[:, None] * left)
+
+
+def _sides_of(wall: Row) -> list[FloatArray]:
+    """Return the lines (2, 2) of a wall's sides, each with what it looks at on its left."""
+    line_m = added.ends_of(wall)
+    half_m = added.half_m_of(wall) * _left(line_m)
+    return [line_m + half_m, (line_m - half_m)[::-1]]
+
+
+def _let_follow(rows: PlanRows, before_m: list[FloatArray], wall: Row, said: str) -> None:
+    for old_m, new_m in zip(before_m, _sides_of(wall), strict=True):
+        following.follow_side(rows, old_m, new_m, said)
 
 
 def _faces_of(rows: PlanRows, wall: Row) -> list[Row]:

@@ -57,8 +57,8 @@ def split_room(
     numbers = [number, *range(first, first + len(parts) - 1)]
     for part, other in zip(parts[1:], numbers[1:], strict=True):
         own = {"room": other, "name": "", "use": "", "corrected": said}
-        rows.rooms.append(room | own | _shape_columns(part))
-    room |= _shape_columns(parts[0]) | {"corrected": said}
+        rows.rooms.append(room | own | shape_columns(part))
+    room |= shape_columns(parts[0]) | {"corrected": said}
     shapes = np.array(parts, object)
     for opening in rows.openings:
         place = shapely.Point(added.ends_of(opening).mean(axis=0))
@@ -114,7 +114,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
     whole = max(shapely.get_parts(joined), key=lambda part: part.area)
     if not (whole.intersects(one) and whole.intersects(two)):
         return "is parted from the other room by a wall; remove that, too"
-    room |= _shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
+    room |= shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
     room |= {"closed": room["closed"] and other["closed"], "corrected": said}
     room |= {said: room[said] or other[said] for said in ("name", "use")}
     room["n_scans"] = max(room["n_scans"], other["n_scans"])
@@ -205,7 +205,8 @@ def _is_inside(opening: Row, room: int) -> bool:
     return opening["wall"] < 0 and opening["room_a"] == opening["room_b"] == room
 
 
-def _shape_columns(outline: shapely.Polygon) -> Row:
+def shape_columns(outline: shapely.Polygon) -> Row:
+    """Return the columns of a room that follow from its outline."""
     circle = shapely.maximum_inscribed_circle(outline, tolerance=_LABEL_M)
     x_m, y_m = shapely.get_coordinates(circle)[0].tolist()
     measures = {"area_m2": outline.area, "perimeter_m": outline.length, "x_m": x_m, "y_m": y_m}
