@@ -238,3 +238,11 @@ def test_an_opening_is_in_the_wall_that_it_fits(plan):
     door = {"element": "opening", "action": "add", "line": [[4.2, 1.7], [4.2, 2.9]], "kind": "door"}
     found = corrected(plan, pier, door)
     assert found.openings["wall"][-1] == 5 and found.openings["x0_m"][-1] == pytest.approx(4.05)
+
+
+def test_a_line_beside_a_wall_leaves_it_between_the_rooms_that_are_joined(plan):
+    beside = {"element": "room", "action": "split", "line": [[3.2, 0], [3.2, 3]]}
+    one = {"element": "room", "action": "merge", "at": [3.6, 2.0], "with": [5, 2.0]}
+    found = corrected(plan, beside, one)
+    # 0.8 m x 3 m and 9 m2, and through the door of 0.9 m in the wall of 0.1 m
+    assert sorted(found.rooms["area_m2"]) == pytest.approx([9.6, 11.49], abs=0.01)

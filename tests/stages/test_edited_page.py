@@ -160,7 +160,7 @@ def test_an_end_of_a_wall_is_dragged_and_a_key_moves_it_by_a_tenth_of_a_metre(pa
     assert ends_of(entry) == pytest.approx([4.05, -0.1, 4.05, 2.1], abs=0.03)
 
 
-def test_a_room_is_parted_by_a_line_and_its_area_is_to_be_recomputed(page):
+def test_a_room_is_parted_by_a_line_and_its_areas_follow(page):
     show(page, "room 0")
     press(page, "Two rooms: draw the line", "#card")
     click(page, on_screen(page, 1.5, 0.05))
@@ -168,7 +168,8 @@ def test_a_room_is_parted_by_a_line_and_its_area_is_to_be_recomputed(page):
     (entry,) = entries(page)
     assert (entry["element"], entry["action"]) == ("room", "split")
     assert in_sight(page, "#edits .cut") == 1
-    assert label_of(page, "room 0") == ["Room 0", "areas to be recomputed"]
+    # by two taps on the screen, at about 1.5 m
+    assert label_of(page, "room 0") == ["Room 0", "7.5 m²"]
 
 
 def test_two_rooms_are_one(page):

@@ -60,8 +60,13 @@ def test_an_outline_goes_on_beyond_a_short_wall():
     of_plan = rows()
     line_m = np.array([[2.0, 3.0], [1.0, 3.0]])
     follow_side(of_plan, line_m, line_m + np.array([0, 0.2]), "by hand")
-    # the wall, and 0.3 m beyond each end
-    assert areas_of(of_plan) == pytest.approx([12 + 0.2 * 1.6, 9])
+    assert areas_of(of_plan) == pytest.approx([12 + 0.2 * 1.0, 9])
+
+
+def test_an_outline_that_begins_where_the_wall_ends_stays(plan):
+    # the north wall of the large room ends 0.05 m before the small one begins
+    found = corrected(plan, {"element": "wall", "at": [2, 3.1], "line": [[4.05, 3.4], [-0.1, 3.4]]})
+    assert found.rooms["area_m2"].tolist() == pytest.approx([13.2, 9])
 
 
 def test_an_outline_that_would_cross_itself_stays():

@@ -124,5 +124,5 @@ const choices = (() => {
     const subject = name || number ? where : words;
     return `${subject[0].toUpperCase()}${subject.slice(1)} ${said}`;
   }
-  return { make, button, instead, shape, fields, right, describe };
+  return { make, button, instead, shape, fields, right, roomName, describe };
 })();

@@ -50,17 +50,33 @@
     if (!label) return;
     label.children[isArea ? 1 : 0].textContent = words;
   }
-  const labels = [...plan.querySelectorAll("[data-label]")].map((label) => [label, [...label.children].map((text) => text.textContent)]);
+  const labels = [...plan.querySelectorAll("[data-label]")].map((label) => [label, [...label.children].map((text) => [text.textContent, text.getAttribute("x"), text.getAttribute("y")])]);
+  const put = (text, [x, y]) => { text.setAttribute("x", x.toFixed(3)); text.setAttribute("y", (-y).toFixed(3)); };
+  function labelAreas() {
+    for (const { element, of, isChanged, isKnown, area_m2: area, pieces, place } of areas.list()) {
+      if (!isChanged) continue;
+      const words = isKnown ? `${area.toFixed(1)} m²` : "area to be recomputed";
+      if (of) {
+        const text = svg("text", { "data-part-of": of }, `part: ${words}`);
+        put(text, place);
+        group.append(text);
+        continue;
+      }
+      const label = plan.querySelector(`[data-label="${element}"]`);
+      const [name, area_] = label.children;
+      relabel(element, isKnown && area_.textContent.startsWith("about ") ? `about ${words}` : words, true);
+      // the larger part keeps the label, which may have stood in the other
+      if (pieces.some((piece) => shapes.has(piece, [Number(name.getAttribute("x")), -Number(name.getAttribute("y"))]))) continue;
+      for (const text of label.children) put(text, place);
+    }
+    for (const element of areas.gone()) plan.querySelector(`[data-label="${element}"]`)?.classList.add("off");
+  }
   function drawRoom(entry, element) {
     if (entry.action === "split") {
       draw("cut", trace(entry.line));
-      const room = edits.nearest("room", edits.middle(entry.line));
-      if (room) relabel(room, "areas to be recomputed", true);
     } else if (entry.action === "merge") {
       const [room, other] = [entry.at, entry.with].map((place) => edits.nearest("room", place));
       for (const each of [room, other]) if (each) draw("joined", shape(each));
-      if (room) relabel(room, "area to be recomputed", true);
-      if (other && room && other !== room) plan.querySelector(`[data-label="${other}"]`).classList.add("off");
     } else if (entry.action === "remove") {
       draw("outside", shape(element));
       relabel(element, "outside", true);
@@ -80,7 +96,11 @@
     ticks.replaceChildren();
     for (const [label, texts] of labels) {
       label.classList.remove("off");
-      [...label.children].forEach((text, i) => { text.textContent = texts[i]; });
+      [...label.children].forEach((text, i) => {
+        text.textContent = texts[i][0];
+        text.setAttribute("x", texts[i][1]);
+        text.setAttribute("y", texts[i][2]);
+      });
     }
     const entries = edits.entries();
     const answered = new Map();
@@ -91,6 +111,7 @@
       const isOfPlan = entry.action === "add" || entry.action === "split" || entry.action === "merge";
       if (element || isOfPlan) drawers[entry.element]?.(entry, element, number);
     });
+    labelAreas();
     for (const mark of plan.querySelectorAll(".doubt")) {
       const entry = answered.get(mark.dataset.element);
       mark.classList.toggle("answered", entry !== undefined);

@@ -183,6 +183,7 @@ const edits = (() => {
     bring: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
     adopt, know, tell: said,
     has: (entry) => has(current, entry),
+    isSame: (one, other) => identify(one) === identify(other),
     undo: () => { done = Math.max(0, done - 1); store(); changed(); },
     redo: () => { done = Math.min(steps.length, done + 1); store(); changed(); },
     canUndo: () => done > 0,

@@ -62,6 +62,7 @@ const elements = (() => {
     const title = make("h2", `${kind[0].toUpperCase()}${kind.slice(1)} ${number}`);
     const entry = edits.entryOf(element);
     const state = entry && edits.isNew(entry) ? [make("p", `You said: ${choices.describe(entry)}`, { class: "said" })] : [];
+    state.push(...areas.describe(element).map((line) => make("p", line, { class: "said" })));
     const acts = make("div", "", { class: "acts" });
     acts.append(choices.right(element, closeCard), ...choices.instead(element, closeCard), ...choices.shape(element, closeCard, edits.place(place)), ...saying.more(element, closeCard));
     const toTable = button("show in the table", () => row.scrollIntoView({ block: "center" }), { class: "plain" });

@@ -24,12 +24,12 @@ def follow_side(rows: PlanRows, old_m: FloatArray, new_m: FloatArray, said: str)
     turned = float(old.direction @ new.direction)
     if turned < _SKEW or np.allclose(old.offset_m(new_m), 0.0):
         return
-    reach_m = np.array([-_AT_ENDS_M, np.hypot(*(old_m[1] - old_m[0])) + _AT_ENDS_M])
+    length_m = float(np.hypot(*(old_m[1] - old_m[0])))
     for room in rows.rooms:
         # what is inside lies to the left of all rings
         outline = shapely.orient_polygons(shapely.from_wkb(room["geometry"]))
         rings = [
-            _move_ring(shapely.get_coordinates(ring)[:-1], old, new, reach_m)
+            _move_ring(shapely.get_coordinates(ring)[:-1], old, new, length_m)
             for ring in shapely.get_rings(outline)
         ]
         moved = shapely.Polygon(rings[0], rings[1:])
@@ -38,32 +38,27 @@ def follow_side(rows: PlanRows, old_m: FloatArray, new_m: FloatArray, said: str)
             room |= shape_columns(moved) | {"corrected": room["corrected"] or said}
 
 
-def _move_ring(ring_m: FloatArray, old: Line, new: Line, reach_m: FloatArray) -> FloatArray:
-    """Return a ring (n, 2) with its edges along a line moved; where they go beyond it, cut."""
-    along_m, off_m = old.along_m(ring_m), old.offset_m(ring_m)
-    nexts = np.roll(np.arange(len(ring_m)), -1)
-    is_near = np.abs(off_m) <= _ON_SIDE_M
-    is_along = is_near & is_near[nexts] & (along_m[nexts] > along_m)
-    is_within = (along_m >= reach_m[0]) & (along_m <= reach_m[1])
+def _move_ring(ring_m: FloatArray, old: Line, new: Line, length_m: float) -> FloatArray:
+    """Return a ring (n, 2) with its edges along a line moved; where they go on, cut at its ends."""
+    along_m = old.along_m(ring_m)
+    is_near = np.abs(old.offset_m(ring_m)) <= _ON_SIDE_M
+    is_within = (along_m >= -_AT_ENDS_M) & (along_m <= length_m + _AT_ENDS_M)
+    next_m = np.roll(along_m, -1)
+    # what begins where the side ends is along another wall
+    overlap_m = np.minimum(next_m, length_m) - np.maximum(along_m, 0.0)
+    is_along = is_near & np.roll(is_near, -1) & (next_m > along_m) & (overlap_m > 0)
     goes = is_within & (is_along | np.roll(is_along, 1))
     corners: list[FloatArray] = []
-    for i, j in zip(range(len(ring_m)), nexts.tolist(), strict=True):
+    for i, (from_m, to_m) in enumerate(zip(along_m.tolist(), next_m.tolist(), strict=True)):
         corners.append(_shift(ring_m[i], old, new) if goes[i] else ring_m[i])
-        if is_along[i]:
-            cuts_m = _list_cuts(along_m[i], along_m[j], reach_m)
-            enters = not is_within[i]
-            for share in cuts_m:
-                place_m = ring_m[i] + share * (ring_m[j] - ring_m[i])
-                pair = [place_m, _shift(place_m, old, new)]
-                corners += pair if enters else pair[::-1]
-                enters = not enters
+        way_m = ring_m[(i + 1) % len(ring_m)] - ring_m[i]
+        if is_along[i] and from_m < -_AT_ENDS_M:
+            place_m = ring_m[i] + way_m * (0.0 - from_m) / (to_m - from_m)
+            corners += [place_m, _shift(place_m, old, new)]
+        if is_along[i] and to_m > length_m + _AT_ENDS_M:
+            place_m = ring_m[i] + way_m * (length_m - from_m) / (to_m - from_m)
+            corners += [_shift(place_m, old, new), place_m]
     return np.array(corners)
-
-
-def _list_cuts(from_m: float, to_m: float, reach_m: FloatArray) -> list[float]:
-    """Return at which shares of an edge it enters and leaves a reach."""
-    shares = (reach_m - from_m) / (to_m - from_m)
-    return sorted(share for share in shares.tolist() if 0 < share < 1)
 
 
 def _shift(place_m: FloatArray, old: Line, new: Line) -> FloatArray:

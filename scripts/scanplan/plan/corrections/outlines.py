@@ -195,7 +195,9 @@ def _draw_walls(rows: PlanRows) -> BaseGeometry:
     half_m = [max(added.half_m_of(wall), _SLACK_M) for wall in rows.walls]
     axes = np.array([floorplan.draw_axis(wall) for wall in rows.walls], object)
     bodies = overlays.buffer_shapes(axes, np.array(half_m), cap_style="square")
-    cuts = [shapely.LineString(added.ends_of(opening)) for opening in rows.openings]
+    # a line that parts a room is open, and leaves the walls beside it
+    in_walls = [opening for opening in rows.openings if opening["wall"] >= 0]
+    cuts = [shapely.LineString(added.ends_of(opening)) for opening in in_walls]
     gaps = overlays.buffer_shapes(np.array(cuts, object), _THICKEST_M, cap_style="flat")
     return overlays.subtract_areas(overlays.unite_areas(bodies), overlays.unite_areas(gaps))
 

@@ -104,8 +104,10 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
         "wall": [f' data-thickness="{m:.3f}"' for m in np.nan_to_num(plan.walls["thickness_m"])],
         "face": [""] * len(rows),
         "opening": [
-            f' data-kind="{escape(kind)}" data-wall="{wall}"'
-            for kind, wall in zip(plan.openings["type"], plan.openings["wall"], strict=True)
+            f' data-kind="{escape(kind)}" data-wall="{wall}" data-rooms="{room} {other}"'
+            for kind, wall, room, other in zip(
+                *(plan.openings[name] for name in ("type", "wall", "room_a", "room_b")), strict=True
+            )
         ],
     }
     for kind, columns in (("wall", plan.walls), ("face", faces), ("opening", plan.openings)):
