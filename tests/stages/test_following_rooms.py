@@ -88,12 +88,13 @@ def test_what_one_room_gets_the_other_loses(south_m, north_m):
     assert areas_of(of_plan) == pytest.approx([12 + gained_m2, 9 - gained_m2])
 
 
-def test_holes_go_with_the_walls_around_them():
+@pytest.mark.parametrize(("by_m", "area_m2"), [(0.5, 11 - 0.5), (-1.2, 11)])
+def test_holes_go_with_the_walls_around_them_and_are_not_turned_inside_out(by_m, area_m2):
     ring = shapely.Polygon(shapely.box(0, 0, 4, 3).exterior, [shapely.box(1.5, 1, 2.5, 2).exterior])
     of_plan = rows_of_plan(
         {name: made() for name, made in MADE.items()}
         | {"rooms": floorplan_making.rooms([ring, floorplan_making.ROOMS[1]])}
     )
     line_m = np.array([[1.5, 1.0], [1.5, 2.0]])
-    follow_side(of_plan, line_m, line_m - np.array([0.5, 0]), "by hand")
-    assert areas_of(of_plan) == pytest.approx([11 - 0.5, 9])
+    follow_side(of_plan, line_m, line_m - np.array([by_m, 0]), "by hand")
+    assert areas_of(of_plan) == pytest.approx([area_m2, 9])

@@ -42,9 +42,10 @@ const areas = (() => {
     before.forEach((side, i) => {
       for (const room of rooms) {
         const moved = shapes.follow(room.pieces[0], side, after[i]);
-        if (Math.abs(shapes.areaOf(moved) - shapes.areaOf(room.pieces[0])) < 1e-4) continue;
+        if (!moved) change(room, false);
+        if (!moved || Math.abs(shapes.areaOf(moved) - shapes.areaOf(room.pieces[0])) < 1e-4) continue;
         room.pieces = [moved];
-        change(room, true);
+        change(room, room.isKnown);
       }
     });
   }

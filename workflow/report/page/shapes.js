@@ -3,6 +3,8 @@ const shapes = (() => {
   const onSide = 0.05; // metres from a side of a wall to an outline along it, as when corrections are carried out
   const atEnds = 0.3; // metres beyond the ends of a wall that its side still reaches
   const hair = 1e-7; // metres: rounding
+  const rounded = 0.002; // metres that places of the page are off by, at most
+  const passable = 0.3; // metres: less of a way between rooms is a corner
   const slack = 0.01; // metres that a line is a piece of a room by
   const parallel = Math.cos((2 * Math.PI) / 180); // of sides that face each other
   const cross = (a, b) => a[0] * b[1] - a[1] * b[0];
@@ -30,12 +32,12 @@ const shapes = (() => {
     return isIn;
   }
   function distance(rings, at) {
-    return has(rings, at) ? 0 : Math.min(...edgesOf(rings).map((edge) => edits.distance(at, edge)));
+    return has(rings, at) ? 0 : edgesOf(rings).reduce((least, edge) => Math.min(least, edits.distance(at, edge)), Infinity);
   }
   // somewhere inside: the middle of the widest stretch half way up
   function within(rings) {
-    const ys = rings[0].map(([, y]) => y);
-    const y = (Math.min(...ys) + Math.max(...ys)) / 2 + hair;
+    const ys = rings[0].map(([, y]) => y).sort((a, b) => a - b);
+    const y = (ys[0] + ys.at(-1)) / 2 + hair;
     const xs = edgesOf(rings).filter(([a, b]) => a[1] > y !== b[1] > y).map(([a, b]) => a[0] + ((y - a[1]) / (b[1] - a[1])) * (b[0] - a[0])).sort((a, b) => a - b);
     let best = 0;
     for (let i = 0; i < xs.length; i += 2) if (xs[i + 1] - xs[i] > xs[best + 1] - xs[best]) best = i;
@@ -95,7 +97,7 @@ const shapes = (() => {
     return outer.sort((a, b) => areaOf(b) - areaOf(a));
   }
 
-  // --- moved with a side of a wall, which has its room on its left ---
+  // --- moved with a side of a wall, which has its room on its left; null where rounding decides ---
   function follow(rings, old, to) {
     const [u, v] = [unit(old), unit(to)];
     const n = [-u[1], u[0]];
@@ -106,12 +108,24 @@ const shapes = (() => {
       const foot = plus(place, n, -dot(minus(place, old[0]), n));
       return plus(place, n, -dot(minus(foot, to[0]), m) / dot(n, m));
     };
+    let isSure = true;
+    const isMore = (value, limit) => {
+      if (Math.abs(value - limit) < rounded) isSure = false;
+      return value > limit;
+    };
     const moved = rings.map((ring) => {
       const along = ring.map((place) => dot(minus(place, old[0]), u));
-      const isNear = ring.map((place) => Math.abs(dot(minus(place, old[0]), n)) <= onSide);
-      const isIn = along.map((s) => s >= -atEnds && s <= length + atEnds);
+      const off = ring.map((place) => Math.abs(dot(minus(place, old[0]), n)));
+      const isIn = along.map((s, i) => off[i] <= onSide + rounded && !isMore(-s, atEnds) && !isMore(s - length, atEnds));
       // what begins where the side ends is along another wall
-      const isAlong = ring.map((_, i) => isNear[i] && next(isNear, i) && next(along, i) > along[i] && Math.min(next(along, i), length) > Math.max(along[i], 0));
+      const isAlong = ring.map((_, i) => {
+        const [from, to] = [along[i], next(along, i)];
+        const over = Math.min(to, length) - Math.max(from, 0);
+        // what is not even beside it decides nothing
+        if (to <= from || over < -rounded) return false;
+        if (to - from < 5 * rounded) return Math.max(off[i], next(off, i)) <= onSide && over > 0; // nor does what is that short
+        return !isMore(Math.max(off[i], next(off, i)), onSide) && isMore(over, Math.min((to - from) / 2, onSide));
+      });
       return ring.flatMap((place, i) => {
         const made = [isIn[i] && (isAlong[i] || isAlong.at(i - 1)) ? shift(place) : place];
         const [from, to] = [along[i], next(along, i)];
@@ -122,16 +136,24 @@ const shapes = (() => {
       });
     });
     const edges = edgesOf(moved);
-    const isWhole = sum(moved[0]) > 0 && !edges.some((one, i) => edges.slice(i + 1).some((other) => doCross(one, other)));
+    const isWhole = moved.every((ring, i) => sum(ring) > 0 === sum(rings[i]) > 0) && !edges.some((one, i) => edges.slice(i + 1).some((other) => doCross(one, other)));
+    if (!isSure && areaOf(moved) !== areaOf(rings)) return null;
     return isWhole ? moved : rings;
   }
 
   // --- between two: strips from side to side, less what stands in them; null where that is not simple ---
-  const gapOf = (one, two) => Math.min(...edgesOf(one).flatMap((e) => edgesOf(two).flatMap((f) => [...f.map((at) => edits.distance(at, e)), ...e.map((at) => edits.distance(at, f))])));
+  function gapOf(one, two) {
+    const others = edgesOf(two);
+    let least = Infinity;
+    for (const e of edgesOf(one)) {
+      for (const f of others) least = Math.min(least, edits.distance(f[0], e), edits.distance(e[0], f));
+    }
+    return least;
+  }
   function between(one, two, walls, openings) {
     const gap = gapOf(one, two);
     if (gap < 1e-3) return 0;
-    let [total, isOpen] = [0, false];
+    let [total, open] = [0, 0];
     for (const e of edgesOf(one)) {
       const [u, length] = [unit(e), Math.hypot(...minus(e[1], e[0]))];
       const lay = (at) => [dot(minus(at, e[0]), u), -cross(u, minus(at, e[0]))]; // along, and out of the room
@@ -140,12 +162,12 @@ const shapes = (() => {
         const [[fromX, fromY], [toX, toY]] = [lay(f[1]), lay(f[0])];
         const slope = (toY - fromY) / (toX - fromX);
         const up = (x) => fromY + slope * (x - fromX);
-        let [x0, x1] = [Math.max(0, fromX), Math.min(length, toX)];
-        // no wider than what is bridged
-        const widest = gap + 2 * slack;
-        if (slope > 0) x1 = Math.min(x1, fromX + (widest - fromY) / slope);
-        if (slope < 0) x0 = Math.max(x0, fromX + (widest - fromY) / slope);
-        if (x1 - x0 < hair || up((x0 + x1) / 2) <= hair || up((x0 + x1) / 2) > widest) continue;
+        const [x0, x1] = [Math.max(0, fromX), Math.min(length, toX)];
+        const [nearest, farthest] = [up(x0), up(x1)].sort((a, b) => a - b);
+        const widest = gap + 2 * slack; // is bridged
+        if (x1 - x0 < hair || nearest <= hair || nearest > widest) continue;
+        // wedges are bridged in part
+        if (farthest > widest) return null;
         const boxes = stand(walls, openings, lay, [x0, x1], widest);
         if (!boxes) return null;
         const cuts = [...new Set([x0, x1, ...boxes.flatMap(({ x }) => x)])].filter((x) => x >= x0 && x <= x1).sort((a, b) => a - b);
@@ -156,12 +178,12 @@ const shapes = (() => {
             free += Math.max(0, Math.min(y[0], up(middle)) - top);
             top = Math.max(top, Math.min(y[1], up(middle)));
           }
-          if (top === 0) isOpen = true;
+          if (top === 0) open += cuts[i + 1] - cuts[i];
           total += (free + up(middle) - top) * (cuts[i + 1] - cuts[i]);
         }
       }
     }
-    return isOpen ? total : null;
+    return open >= passable ? total : null;
   }
   // what of walls stands in a strip: from where to where along it and across; what is neither along nor across is not simple
   function stand(walls, openings, lay, [x0, x1], depth) {

@@ -33,7 +33,8 @@ def follow_side(rows: PlanRows, old_m: FloatArray, new_m: FloatArray, said: str)
             for ring in shapely.get_rings(outline)
         ]
         moved = shapely.Polygon(rings[0], rings[1:])
-        is_whole = moved.is_valid and shapely.is_ccw(moved.exterior)
+        was_turned, is_turned = (shapely.is_ccw(shapely.get_rings(of)) for of in (outline, moved))
+        is_whole = moved.is_valid and np.array_equal(was_turned, is_turned)
         if is_whole and not moved.equals(outline):
             room |= shape_columns(moved) | {"corrected": room["corrected"] or said}
 
@@ -46,7 +47,8 @@ def _move_ring(ring_m: FloatArray, old: Line, new: Line, length_m: float) -> Flo
     next_m = np.roll(along_m, -1)
     # what begins where the side ends is along another wall
     overlap_m = np.minimum(next_m, length_m) - np.maximum(along_m, 0.0)
-    is_along = is_near & np.roll(is_near, -1) & (next_m > along_m) & (overlap_m > 0)
+    is_beside = overlap_m > np.minimum((next_m - along_m) / 2, _ON_SIDE_M)
+    is_along = is_near & np.roll(is_near, -1) & (next_m > along_m) & is_beside
     goes = is_within & (is_along | np.roll(is_along, 1))
     corners: list[FloatArray] = []
     for i, (from_m, to_m) in enumerate(zip(along_m.tolist(), next_m.tolist(), strict=True)):

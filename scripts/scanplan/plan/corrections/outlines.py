@@ -159,11 +159,7 @@ def _snap_to(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.LineStri
         there if there.distance(end) <= added.REACH_M else end
         for end, there in zip(ends, on_edge, strict=True)
     ]
-    # a hair longer, so that rounding does not leave it short
-    line = shapely.get_coordinates(shapely.LineString(snapped))
-    way_m = line[1] - line[0]
-    more_m = _HAIR_M * way_m / max(float(np.hypot(*way_m)), _HAIR_M)
-    return [shapely.LineString([line[0] - more_m, line[1] + more_m])]
+    return [_lengthen(shapely.LineString(snapped))]
 
 
 def _cut_through(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.LineString]:
@@ -175,7 +171,16 @@ def _cut_through(outline: BaseGeometry, line_m: FloatArray) -> list[shapely.Line
     # a hair inside its ends, as what begins there is of what the line was made longer by
     hair_m = _SLACK_M * along / np.hypot(*along)
     drawn = shapely.LineString([line_m[0] + hair_m, line_m[1] - hair_m])
-    return [part for part in inside if part.intersects(drawn)]
+    # pieces of one line are apart by rounding, and end beside the outline by it
+    return [_lengthen(part) for part in inside if part.distance(drawn) <= _HAIR_M]
+
+
+def _lengthen(line: shapely.LineString) -> shapely.LineString:
+    """Return a straight line a hair longer, so that rounding does not leave it short."""
+    ends_m = shapely.get_coordinates(line)[[0, -1]]
+    way_m = ends_m[1] - ends_m[0]
+    more_m = _HAIR_M * way_m / max(float(np.hypot(*way_m)), _HAIR_M)
+    return shapely.LineString([ends_m[0] - more_m, ends_m[1] + more_m])
 
 
 def _fill_between(one: BaseGeometry, two: BaseGeometry, apart_m: float) -> BaseGeometry:
