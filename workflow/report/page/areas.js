@@ -10,6 +10,11 @@ const areas = (() => {
   let rooms = [];
   let neighbours = new Map();
 
+  const lines = new Map(); // along paths a browser measures slowly
+  function lineOf(element) {
+    if (!lines.has(element)) lines.set(element, edits.lineOf(element));
+    return lines.get(element);
+  }
   const holds = (room, at) => room.pieces.some((piece) => shapes.has(piece, at));
   const roomAt = (at) => rooms.find((room) => holds(room, at));
   const change = (room, isKnown) => Object.assign(room, { isChanged: true, isKnown });
@@ -30,7 +35,7 @@ const areas = (() => {
       if (entry.element !== "wall" || !element || isGone(entry) || !(entry.line || entry.thickness_m)) continue;
       const part = edits.partOf(element);
       if (part.getAttribute("d").split("L").length > 2) continue; // curved walls stay
-      const old = edits.lineOf(element);
+      const old = lineOf(element);
       const half = Number(part.dataset.thickness) / 2;
       const isTurned = entry.line && (entry.line[1][0] - entry.line[0][0]) * (old[1][0] - old[0][0]) + (entry.line[1][1] - entry.line[0][1]) * (old[1][1] - old[0][1]) < 0;
       const line = (isTurned ? entry.line.toReversed() : entry.line) ?? old;
@@ -42,6 +47,7 @@ const areas = (() => {
     before.forEach((side, i) => {
       for (const room of rooms) {
         const moved = shapes.follow(room.pieces[0], side, after[i]);
+        if (moved === room.pieces[0]) continue;
         if (!moved) change(room, false);
         if (!moved || Math.abs(shapes.areaOf(moved) - shapes.areaOf(room.pieces[0])) < 1e-4) continue;
         room.pieces = [moved];
@@ -53,11 +59,11 @@ const areas = (() => {
   const added = (kind) => edits.fresh().filter(({ element, action }) => element === kind && action === "add");
   function listWalls() {
     const half = (thickness) => Math.max((thickness || 0) / 2, thin);
-    return [...parts("wall").map(([{ element, thickness }, entry]) => ({ line: entry?.line ?? edits.lineOf(element), half: half(entry?.thickness_m ?? Number(thickness)),
+    return [...parts("wall").map(([{ element, thickness }, entry]) => ({ line: entry?.line ?? lineOf(element), half: half(entry?.thickness_m ?? Number(thickness)),
       isCurved: edits.partOf(element).getAttribute("d").split("L").length > 2 })), ...added("wall").map((entry) => ({ line: entry.line, half: half(entry.thickness_m), isCurved: false }))];
   }
   const isOpen = (entry) => !(entry && edits.isNew(entry) && entry.action === "remove");
-  const listOpenings = () => [...parts("opening").filter(([, entry]) => isOpen(entry)).map(([{ element }, entry]) => entry?.line ?? edits.lineOf(element)), ...added("opening").map(({ line }) => line)];
+  const listOpenings = () => [...parts("opening").filter(([, entry]) => isOpen(entry)).map(([{ element }, entry]) => entry?.line ?? lineOf(element)), ...added("opening").map(({ line }) => line)];
 
   // --- rooms parted and joined ---
   function split(entry, pending) {
@@ -75,6 +81,7 @@ const areas = (() => {
     for (const each of [room, ...made]) change(each, true);
     rooms.push(...made);
     for (const [opening, sides] of neighbours) {
+      if (!sides.includes(room.element)) continue;
       const at = edits.middle(lineAt(opening));
       const nearest = [room, ...made].reduce((best, each) => (shapes.distance(each.pieces[0], at) < shapes.distance(best.pieces[0], at) ? each : best), room);
       sides.forEach((side, i) => { if (side === room.element) sides[i] = nearest.element; });
@@ -91,7 +98,7 @@ const areas = (() => {
     const isSimple = found && found.length >= 2 && found.length <= 1 + lines.length && shapes.areaOf(found.at(-1)) >= least;
     return isSimple ? found : null;
   }
-  const lineAt = (opening) => (opening.startsWith("entry") ? edits.entries()[Number(opening.split(" ")[1])].line : edits.entryOf(opening)?.line ?? edits.lineOf(opening));
+  const lineAt = (opening) => (opening.startsWith("entry") ? edits.entries()[Number(opening.split(" ")[1])].line : edits.entryOf(opening)?.line ?? lineOf(opening));
   function merge(entry) {
     const both = [entry.at, entry.with].map(roomAt);
     if (!both[0] || !both[1] || both[0] === both[1]) return;

@@ -26,7 +26,14 @@ const shapes = (() => {
     rings.sort((a, b) => Math.abs(sum(b)) - Math.abs(sum(a)));
     return rings.map((ring, i) => (sum(ring) > 0 === (i === 0) ? ring : ring.toReversed()));
   }
+  // whether some places may be within reach of a shape
+  const boxes = new WeakMap();
+  function isBy(rings, places, by) {
+    if (!boxes.has(rings)) boxes.set(rings, [0, 1].map((axis) => rings[0].reduce(([low, high], place) => [Math.min(low, place[axis]), Math.max(high, place[axis])], [Infinity, -Infinity])));
+    return boxes.get(rings).every(([low, high], axis) => places.some((place) => place[axis] >= low - by) && places.some((place) => place[axis] <= high + by));
+  }
   function has(rings, [x, y]) {
+    if (!isBy(rings, [[x, y]], 0)) return false;
     let isIn = false;
     for (const [[ax, ay], [bx, by]] of edgesOf(rings)) if (ay > y !== by > y && x < ax + ((y - ay) / (by - ay)) * (bx - ax)) isIn = !isIn;
     return isIn;
@@ -47,6 +54,7 @@ const shapes = (() => {
   // --- parted by lines ---
   // pieces of a line, made longer, that lie inside: from metre to metre along it
   function pieces(rings, line, over = 0) {
+    if (!isBy(rings, line, over)) return [];
     const u = unit(line);
     const length = dot(minus(line[1], line[0]), u);
     const at = [-over, length + over];
@@ -102,7 +110,7 @@ const shapes = (() => {
     const [u, v] = [unit(old), unit(to)];
     const n = [-u[1], u[0]];
     const m = [-v[1], v[0]];
-    if (dot(u, v) < 0.5) return rings;
+    if (dot(u, v) < 0.5 || !isBy(rings, old, atEnds)) return rings;
     const length = dot(minus(old[1], old[0]), u);
     const shift = (place) => {
       const foot = plus(place, n, -dot(minus(place, old[0]), n));
@@ -135,9 +143,12 @@ const shapes = (() => {
         return made;
       });
     });
+    const stays = new Set(rings.flat());
+    if (moved.every((ring) => ring.every((place) => stays.has(place)))) return rings;
+    if (!isSure) return null;
     const edges = edgesOf(moved);
-    const isWhole = moved.every((ring, i) => sum(ring) > 0 === sum(rings[i]) > 0) && !edges.some((one, i) => edges.slice(i + 1).some((other) => doCross(one, other)));
-    if (!isSure && areaOf(moved) !== areaOf(rings)) return null;
+    const shifted = edges.filter(([a, b]) => !stays.has(a) || !stays.has(b));
+    const isWhole = moved.every((ring, i) => sum(ring) > 0 === sum(rings[i]) > 0) && !shifted.some((one) => edges.some((other) => doCross(one, other)));
     return isWhole ? moved : rings;
   }
 
