@@ -149,3 +149,12 @@ def test_areas_stand_on_the_plan_and_on_cards_and_go_with_an_undo(page):
     assert "Joins with your changes: a part of Room 0 – outside" in text_of(page, "#card")
     page.run("edits.undo()")
     assert page.run(labels) == ["Room 0", "12.0 m²"] and in_sight(page, "[data-part-of]") == 0
+
+
+def test_a_room_is_drawn_as_far_as_its_wall_is_moved(page):
+    say(page, (WALL, {"line": [[4.25, -0.1], [4.25, 3.1]]}))
+    boxes = page.run(
+        "[...document.querySelectorAll('#edits .floor')].map(p => p.getBBox())"
+        ".map(box => [box.x, box.width])"
+    )
+    assert sorted(boxes) == [pytest.approx([0, 4.2]), pytest.approx([4.3, 2.8])]

@@ -51,6 +51,7 @@ const areas = (() => {
         if (!moved) change(room, false);
         if (!moved || Math.abs(shapes.areaOf(moved) - shapes.areaOf(room.pieces[0])) < 1e-4) continue;
         room.pieces = [moved];
+        room.isMoved = true;
         change(room, room.isKnown);
       }
     });
@@ -76,7 +77,7 @@ const areas = (() => {
       pending.push({ room, line: entry.line });
       return change(room, false);
     }
-    const made = found.slice(1).map((piece) => ({ element: `part ${rooms.length} of ${room.element}`, of: room.element, pieces: [piece], between: 0 }));
+    const made = found.slice(1).map((piece) => ({ element: `part ${rooms.length} of ${room.element}`, of: room.element, isMoved: room.isMoved, pieces: [piece], between: 0 }));
     room.pieces = [found[0]];
     for (const each of [room, ...made]) change(each, true);
     rooms.push(...made);

@@ -53,8 +53,9 @@
   const labels = [...plan.querySelectorAll("[data-label]")].map((label) => [label, [...label.children].map((text) => [text.textContent, text.getAttribute("x"), text.getAttribute("y")])]);
   const put = (text, [x, y]) => { text.setAttribute("x", x.toFixed(3)); text.setAttribute("y", (-y).toFixed(3)); };
   function labelAreas() {
-    for (const { element, of, isChanged, isKnown, area_m2: area, pieces, place } of areas.list()) {
+    for (const { element, of, isChanged, isKnown, isMoved, area_m2: area, pieces, place } of areas.list()) {
       if (!isChanged) continue;
+      if (isMoved) draw("floor", pieces.flat().map((ring) => `${trace(ring)}Z`).join(""), 0);
       const words = isKnown ? `${area.toFixed(1)} m²` : "area to be recomputed";
       if (of) {
         const text = svg("text", { "data-part-of": of }, `part: ${words}`);
@@ -69,6 +70,8 @@
       if (pieces.some((piece) => shapes.has(piece, [Number(name.getAttribute("x")), -Number(name.getAttribute("y"))]))) continue;
       for (const text of label.children) put(text, place);
     }
+    // what lies on floors is drawn over them
+    group.append(...group.querySelectorAll(".cut, .opening, .thing, .leaf, .taped, text"));
     for (const element of areas.gone()) plan.querySelector(`[data-label="${element}"]`)?.classList.add("off");
   }
   function drawRoom(entry, element) {
