@@ -107,8 +107,9 @@ def _print_drawing(file: Path) -> str:
 def _check_sheet(file: Path) -> str:
     fonts = _run("pdffonts", str(file)).splitlines()[_FIRST_FONT:]
     n_embedded = sum(font.split()[_EMBEDDED] == "yes" for font in fonts)
+    embedded = f"{n_embedded} of {len(fonts)} fonts embedded" if fonts else "no fonts listed"
     checked = _run("qpdf", "--check", str(file)).replace("\n", " ")
-    return f"qpdf: {checked}; {n_embedded} of {len(fonts)} fonts embedded"
+    return f"qpdf: {checked}; {embedded}"
 
 
 def _read_layers(file: Path) -> str:
@@ -120,9 +121,14 @@ def _ask_node(script: str, file: Path, node: str) -> str:
 
 
 def _run(program: str, *words: str, **surroundings: str) -> str:
-    """Return what a program says."""
+    """Return what a program says, its faults and how it ended where that was not well."""
     if shutil.which(program) is None:
         return f"{program} is not installed"
     asked = ["env", *(f"{name}={value}" for name, value in surroundings.items()), program, *words]
-    done = subprocess.run(asked, capture_output=True, text=True, timeout=_SECONDS, check=False)
+    try:
+        done = subprocess.run(asked, capture_output=True, text=True, timeout=_SECONDS, check=False)
+    except subprocess.TimeoutExpired:
+        return f"{program} gave no answer in {_SECONDS} s"
+    if done.returncode:
+        return f"{done.stdout}{done.stderr}".strip() + f" ({program} ended with {done.returncode})"
     return (done.stdout or done.stderr).strip()

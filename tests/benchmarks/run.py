@@ -167,8 +167,9 @@ def bench_validation(folders: Sequence[Path] = ()) -> None:
     realistic = [folder for folder in folders if (folder / "code/results").is_dir()]
     for folder in realistic:
         validation_bench.bench(folder / "code/results", [folder / "truths"], SETTINGS)
-    if not realistic:
-        validation_bench.bench(ROOT / "results", folders, SETTINGS)
+    others = [folder for folder in folders if folder not in realistic]
+    if others or not realistic:
+        validation_bench.bench(ROOT / "results", others, SETTINGS)
 
 
 def record_guard(revision: str, folder: str, *names: str) -> None:

@@ -8,6 +8,7 @@ from helpers import bag_making, cloud_files, e57_making, las_making, ptx_making,
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
+from scanplan.stage import witness_table
 from scanplan.store import doubts, schemas
 
 
@@ -60,14 +61,15 @@ def merge_stations():
     return xyz_m[np.isfinite(xyz_m).all(axis=1)]
 
 
-def test_a_merged_cloud_in_feet_is_no_plan_until_the_key_is_set(tmp_path, bag_plan):
+def test_a_merged_cloud_in_feet_is_a_sketch_until_the_key_is_set(tmp_path, bag_plan):
     cloud_files.write_by_open3d(tmp_path / "flat.ply", merge_stations() / 0.3048)
     files = dataset_files.find_files(tmp_path / "flat.ply")
     (tmp_path / "as_it_is").mkdir()
     told = making.make_plan(tmp_path / "as_it_is", files).findings
     assert [(one.witness, "advanced.input.cloud_unit: ft" in one.remedy) for one in told] == [
-        ("wide ways", True)
+        ("wide doors", True)
     ]
+    assert making.read_verdict(tmp_path / "as_it_is").worth == witness_table.SKETCH
     plan = small_flat.plan_of(tmp_path / "plan", files, cloud_unit="ft")
     small_flat.assert_same_plan(plan, bag_plan)
 

@@ -1,5 +1,7 @@
 """Catalogues of nominal sizes: what they may say, and one line for each mistake."""
 
+import re
+
 import pytest
 
 from helpers.default_settings import SETTINGS
@@ -81,8 +83,12 @@ def test_a_catalogue_that_is_not_there_is_told(tmp_path):
 
 def test_a_region_has_a_catalogue_of_ours():
     read = read_catalogue("north_america")
-    # half an inch of board on both sides of a stud of 3 1/2 inches; a door of three feet
-    assert read["walls"]["stud 2x4, 4 1/2 in"] == pytest.approx(4.5 * 0.0254, abs=5e-4)
+    # what a name says last it measures, in inches: 5 5/8 in, or 8 in
+    for name, size_m in read["walls"].items():
+        *_, said = re.findall(r"(?:(\d+) )?(?:(\d+)/(\d+) )?in$", name) or [("", "", "")]
+        whole, above, below = (int(part or 0) for part in said)
+        inches = whole + above / (below or 1)
+        assert size_m == pytest.approx(inches * 0.0254, abs=6e-4), name
     assert read["doors"]["door 3-0"] == pytest.approx(3 * 0.3048, abs=5e-4)
     assert read["classification"]["system"] == "OmniClass"
 

@@ -175,7 +175,7 @@ def test_a_mistake_in_words_is_named(tmp_path, text, named):
     [
         *("A-WALL: 'a/b'", "A-WALL: ''", "A-WALL: 3", "A-WALL: W\nA-DOOR: w", "A-WALL: [W]"),
         *("A-WALL: A-DOOR", "A-WALL: A-DOOR\nA-DOOR: A-WALL", "A-WALL: a-chng-same"),
-        *("A-WALL: '0'", "A-WALL: DEFPOINTS"),
+        *("A-WALL: '0'", "A-WALL: DEFPOINTS", 'A-WALL: "a\\nb"', "A-WALL: ' W'", "NOPE: W"),
     ],
 )
 def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):
@@ -189,6 +189,8 @@ def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):
 def test_a_file_that_is_not_there_is_told(read):
     with pytest.raises(StageError, match="does not exist"):
         read("nowhere.yaml")
+    with pytest.raises(StageError, match="does not exist"):
+        read("long" * 2000)
 
 
 @pytest.mark.parametrize(

@@ -88,6 +88,21 @@ def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     assert [symbol.element for symbol in sheet.symbols] == ["glass-0", "glass-2"]
 
 
+def test_a_pane_hides_panes_alone_and_only_where_it_is_drawn():
+    """One of 8 m bounds a room on 3 m, and is not drawn; of two alike the first is."""
+    alike = [((4.1, y_m, 7.0, y_m), -1, "glass", 0.0, 2.5, 1, -1) for y_m in (0.0, -0.1)]
+    wide = ((4.1, -0.1, 12.1, -0.1), -1, "glass", 0.0, 2.5, 1, -1)
+    door = ((5.0, 0.05, 5.9, 0.05), -1, "door", 0.0, 2.0, 1, -1)
+    for rows, drawn in [
+        ([alike[0], wide], ["glass-0"]),
+        (alike, ["glass-0"]),
+        ([alike[0], door], ["glass-0", "door-1"]),
+    ]:
+        openings = floorplan_making.openings(rows)
+        sheet = composed(walls=floorplan_making.walls([]), openings=openings)
+        assert [symbol.element for symbol in sheet.symbols] == drawn
+
+
 def test_a_pane_in_no_wall_is_drawn_as_far_as_it_bounds_a_room():
     # 2 m beyond the room that it bounds, which ends at x 7.1
     row = ((4.1, -0.2, 9.1, -0.2), -1, "glass", 0.0, 2.5, 1, -1)

@@ -254,6 +254,19 @@ def test_what_lies_behind_an_oblique_facade_is_not_measured_from_there():
     assert len(east) == 2 and np.array(east)[..., 0].min() == pytest.approx(10.0)
 
 
+def test_what_lies_before_an_oblique_facade_is_measured():
+    # the side rises to the east, and a hut of 3 m stands before its higher end
+    outlines = [shapely.Polygon([(0, 0), (12, 12), (0, 12)]), shapely.box(9, 6.5, 12, 8)]
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms(outlines),
+    )
+    sheet = composition.compose_sheet(drawn, turn_deg=0.0)
+    south = [float(d.word.text) for d in sheet.dimensions if d.line_m[:, 1].max() < -0.01]
+    assert 3.0 in south
+
+
 def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
     """The small room's north side was not seen, nor its east side north of 1.5 m."""
     north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)

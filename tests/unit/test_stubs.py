@@ -19,7 +19,8 @@ def crossing(from_m, to_m):
     """The toy plan with a wall that is 0.1 m thick, and what rays met in its line outside."""
     walls = [*floorplan_making.WALLS, ((from_m, 1.5, to_m, 1.5), 0.1, 9, 10, "observed")]
     outside = (7.2, 1.55, max(from_m, to_m), 1.55, 6)
-    faces = [*floorplan_making.FACES, (from_m, 1.45, to_m, 1.45, 6), outside]
+    ends_m = (5.0, 8.3) if from_m < to_m else (8.3, 5.0)
+    faces = [*floorplan_making.FACES, (ends_m[0], 1.45, ends_m[1], 1.45, 6), outside]
     hole = ((7.5, 1.5, 8.1, 1.5), 6, "door", 0.0, 2.0, -1, -1)
     return floorplan_making.plan(
         walls=floorplan_making.walls(walls),
@@ -28,9 +29,33 @@ def crossing(from_m, to_m):
     )
 
 
-@pytest.mark.parametrize("turned", [False, True])
-def test_a_wall_ends_at_the_facade_that_it_crosses_and_its_faces_and_openings_with_it(turned):
-    drawn = crossing(8.3, 5.0) if turned else crossing(5.0, 8.3)
+def turned(plan, turn_deg):
+    """The same plan, turned about the origin."""
+    angle = np.radians(turn_deg)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+    def place(columns):
+        ends_m = (centrelines_m(columns) @ turn.T).reshape(-1, 4)
+        names = ("x0_m", "y0_m", "x1_m", "y1_m")
+        normals = {}
+        if "nx" in columns:
+            normals = dict(zip(("nx", "ny"), turn @ [columns["nx"], columns["ny"]], strict=True))
+        return {**columns, **dict(zip(names, ends_m.T, strict=True)), **normals}
+
+    outlines = shapely.from_wkb(np.array(list(plan.rooms["geometry"]), object))
+    moved = shapely.transform(outlines, lambda xy: xy @ turn.T)
+    return replace(
+        plan,
+        walls=place(plan.walls),
+        faces=place(plan.faces),
+        openings=place(plan.openings),
+        rooms={**plan.rooms, "geometry": shapely.to_wkb(moved)},
+    )
+
+
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_a_wall_ends_at_the_facade_that_it_crosses_and_its_faces_and_openings_with_it(is_turned):
+    drawn = crossing(8.3, 5.0) if is_turned else crossing(5.0, 8.3)
     plan, n_cut = cut_stubs(drawn)
     assert n_cut == 1
     ends_m = sorted(centrelines_m(plan.walls)[6][:, 0])
@@ -41,6 +66,28 @@ def test_a_wall_ends_at_the_facade_that_it_crosses_and_its_faces_and_openings_wi
     assert plan.openings["opening"].tolist() == [0, 1, 2]
     # all others are as they were
     assert np.array_equal(centrelines_m(plan.walls)[:6], centrelines_m(drawn.walls)[:6])
+
+
+@pytest.mark.parametrize("turn_deg", range(0, 360, 15))
+def test_a_face_that_goes_on_at_the_other_end_stays_however_a_building_is_turned(turn_deg):
+    drawn = turned(crossing(5.3, 8.3), turn_deg)
+    plan, n_cut = cut_stubs(drawn)
+    assert n_cut == 1
+    # from 5.0, before its wall's own end, to the facade
+    faces_m = centrelines_m(plan.faces)[-1]
+    assert np.hypot(*(faces_m[1] - faces_m[0])) == pytest.approx(EAST_M - 5.0)
+
+
+def test_only_openings_of_what_is_cut_go_with_it():
+    drawn = crossing(5.0, 8.3)
+    across = {**drawn.openings, "x0_m": drawn.openings["x0_m"].copy()}
+    across["x0_m"][-1] = EAST_M - 0.3
+    assert cut_stubs(replace(drawn, openings=across))[0].openings["opening"].tolist() == [0, 1, 2]
+    # a door of another wall, whose middle no line of it holds
+    other = {name: values.copy() for name, values in drawn.openings.items()}
+    other["wall"][0] = 0
+    plan, _ = cut_stubs(replace(drawn, openings=other))
+    assert plan.openings["opening"].tolist() == [0, 1, 2]
 
 
 def test_what_is_cut_is_counted_among_scraps():
@@ -58,8 +105,19 @@ def test_what_may_be_no_facade_cuts_nothing(from_m, to_m):
     assert cut_stubs(crossing(from_m, to_m))[1] == 0
 
 
+def test_a_wall_through_two_facades_back_to_back_is_not_cut_to_nothing():
+    core = [((0, -0.15, 6, -0.15), np.nan, 0, -1, "observed")]
+    core += [((6, 0.15, 0, 0.15), np.nan, 1, -1, "observed")]
+    walls = floorplan_making.walls([*core, ((3, -3, 3, 3), 0.1, 9, 10, "observed")])
+    drawn = replace(floorplan_making.bare(), walls=walls)
+    assert cut_stubs(drawn)[1] == 0
+
+
 def test_what_bounds_a_room_or_was_drawn_by_hand_is_not_cut():
     drawn = crossing(5.0, 8.3)
+    added = drawn.openings["corrected"].copy()
+    added[-1] = "added"
+    assert cut_stubs(replace(drawn, openings={**drawn.openings, "corrected": added}))[1] == 0
     corrected = drawn.walls["corrected"].copy()
     corrected[6] = "added"
     assert cut_stubs(replace(drawn, walls={**drawn.walls, "corrected": corrected}))[1] == 0

@@ -1,5 +1,6 @@
 """Numbers that speak for or against a survey: limits, words, and what each is measured by."""
 
+import dataclasses
 import string
 
 import numpy as np
@@ -75,14 +76,19 @@ def test_a_way_is_as_narrow_as_its_narrowest_place():
     assert np.isnan(survey_witnesses.measure_narrowest(plan, in_one_room))
 
 
-def test_a_merged_cloud_is_asked_for_a_way_as_narrow_as_a_door():
-    plan = floorplan_making.plan(doubted=doubts.Doubts(rayless=("no rays",)))
-    width_m = np.where(plan.openings["type"] == "door", 3.0, 1.0)
-    plan.openings["width_m"][:] = width_m
-    assert survey_witnesses.measure_narrowest_way(plan) == 3.0
-    without = floorplan_making.bare()
+def test_where_no_rays_were_recorded_the_narrowest_door_is_asked_for():
+    rayless = doubts.Doubts(rayless=("no rays",))
+    plan = floorplan_making.plan(doubted=rayless)
+    plan.openings["width_m"][:] = np.where(plan.openings["type"] == "door", 3.0, 1.0)
+    assert survey_witnesses.measure_narrowest_door(plan) == 3.0
+    without = dataclasses.replace(floorplan_making.bare(), doubted=rayless)
     for other in (floorplan_making.plan(), without):
-        assert np.isnan(survey_witnesses.measure_narrowest_way(other))
+        assert np.isnan(survey_witnesses.measure_narrowest_door(other))
+
+
+@pytest.mark.parametrize("name", ["contradicted rays", "wide doors"])
+def test_what_panes_or_gates_may_explain_leaves_a_sketch(name):
+    assert witness_table.WITNESSES[name].leaves == witness_table.SKETCH
 
 
 def test_head_room_speaks_where_no_door_shows_which_way_is_up():

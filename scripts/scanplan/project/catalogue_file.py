@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import is_number, list_ours, read_yaml
+from scanplan.project.yaml_file import find_ours, is_number, read_yaml
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath
@@ -42,7 +42,7 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     StageError
         If it is missing or damaged, or an entry is wrong.
     """
-    file = _find_file(path)
+    file = _OURS if path is None else find_ours("plan.export.catalogue", str(path), "catalogues")
     values = read_yaml(file)
     classification = values.pop("classification", None)
     wanted = {*_LIMITS_M, "facade_m"}
@@ -56,20 +56,6 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
         **{k: _check_sizes(f"{file}: {k}", k, values[k], codes) for k in _LIMITS_M},
         "facade_m": _check_size(f"{file}: facade_m", values["facade_m"], _FACADE_M),
     }
-
-
-def _find_file(path: FilePath | None) -> FilePath:
-    if path is None:
-        return _OURS
-    ours = list_ours("catalogues")
-    if str(path) in ours:
-        return ours[str(path)]
-    if not Path(path).exists():
-        known = ", ".join(ours)
-        raise StageError(
-            f"plan.export.catalogue: {path} does not exist; give one of {known}, or a file"
-        )
-    return path
 
 
 def _check_classification(place: str, given: object) -> dict[str, str]:

@@ -6,12 +6,11 @@ before it has begun.
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import is_number, list_ours, read_yaml
+from scanplan.project.yaml_file import find_ours, is_number, read_yaml
 
 TABLES = ("wall", "opening", "column")
 """What has limits."""
@@ -37,11 +36,7 @@ def read_tolerances(named: str) -> dict[str, Any]:
     StageError
         If it is missing or damaged, or a value is wrong.
     """
-    ours = list_ours("tolerances")
-    if named not in ours and not Path(named).suffix:
-        fault = f"{named} is no table of ours ({', '.join(ours)}), and no file"
-        raise StageError(f"plan.design.tolerances: {fault}; name one of them or a .yaml file")
-    file = ours.get(named, Path(named))
+    file = find_ours("plan.design.tolerances", named, "tolerances")
     values = read_yaml(file)
     wanted = {"title", "upto_m", *TABLES}
     if set(values) != wanted:

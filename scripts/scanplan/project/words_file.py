@@ -8,21 +8,19 @@ from __future__ import annotations
 
 import re
 from datetime import date
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import list_ours, read_yaml
+from scanplan.project.yaml_file import find_ours, list_ours, read_yaml
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from scanplan.types import FilePath
 
-_KEYS = {"words": "plan.export.language", "layers": "plan.export.layers"}
 _PLACE = re.compile(r"\{n?\}")
-_FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`]')
+_FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`\x00-\x1f\x7f]')
 """What names of layers must not have in DXF."""
 _LONGEST = 255
 """Letters of such a name."""
@@ -53,7 +51,7 @@ def read_words(language: str) -> dict[str, Any]:
     """
     if language == "en":
         return {}
-    file = _find_file(language, "words")
+    file = find_ours("plan.export.language", language, "words", ("en",))
     values = read_yaml(file)
     if set(values) != {"decimal", "date", "phrases"}:
         raise StageError(
@@ -95,13 +93,18 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
     """
     if layers is None:
         return {}
-    file = _find_file(str(layers), "layers")
+    file = find_ours("plan.export.layers", str(layers), "layers")
     values = read_yaml(file)
-    taken = {name.casefold() for name in (*read_yaml(_find_file("din", "layers")), *_OF_DXF)}
+    ours = read_yaml(list_ours("layers")["din"])
+    if unknown := sorted(set(map(str, values)) - set(ours)):
+        fault = f"{', '.join(unknown)} is no layer of ours"
+        raise StageError(f"{file}: {fault}; config/layers/din.yaml lists them")
+    taken = {name.casefold() for name in (*ours, *_OF_DXF)}
     for name, other in values.items():
         place = f"{file}: layer {name!r}"
-        if not isinstance(other, str) or not other.strip() or len(other) > _LONGEST:
-            raise StageError(f"{place} has no name of 1 to {_LONGEST} letters; write one")
+        if not isinstance(other, str) or not 0 < len(other.strip()) == len(other) <= _LONGEST:
+            limit = f"1 to {_LONGEST} letters, no space before or after them"
+            raise StageError(f"{place} has no name of {limit}; write one")
         if _FORBIDDEN.search(other):
             raise StageError(f"{place}: {other!r} has signs that DXF forbids; use letters, - and _")
         if other.casefold() in taken:
@@ -111,14 +114,3 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
     if len(set(names)) < len(names):
         raise StageError(f"{file}: two layers have one name; give each its own")
     return {str(name): str(other) for name, other in values.items()}
-
-
-def _find_file(name: str, folder: str) -> Path:
-    """Return one of our files by its name, or else the file of that name."""
-    ours = list_ours(folder)
-    if name in ours:
-        return ours[name]
-    if not Path(name).exists():
-        known = ", ".join([*(["en"] if folder == "words" else []), *ours])
-        raise StageError(f"{_KEYS[folder]}: {name} does not exist; give one of {known}, or a file")
-    return Path(name)

@@ -6,6 +6,7 @@ ruamel.yaml reads it, `yes`, `010` and `1:30` would mean something else here tha
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,8 @@ from scanplan.errors import StageError
 from scanplan.project import texts, user_file
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from scanplan.types import FilePath
 
 
@@ -81,6 +84,29 @@ def _fault(problem: str, place: Any) -> yaml.MarkedYAMLError:
 def list_ours(folder: str) -> dict[str, Path]:
     """Return the files of a folder of `config`, by what a person names them, in order."""
     return {file.stem: file for file in sorted((_CONFIG / folder).glob("*.yaml"))}
+
+
+def find_ours(key: str, name: str, folder: str, others: Sequence[str] = ()) -> Path:
+    """Return the file of a folder of `config` that is named, or else the file of that name.
+
+    Parameters
+    ----------
+    key : str
+        Of the settings, that a person gave the name by.
+    others : sequence of str
+        Names that need no file.
+
+    Raises
+    ------
+    StageError
+        If there is neither.
+    """
+    ours = list_ours(folder)
+    # a name too long for any file is none
+    if name not in ours and not os.path.exists(name):  # noqa: PTH110
+        known = ", ".join([*others, *ours])
+        raise StageError(f"{key}: {name} does not exist; give one of {known}, or a file")
+    return ours.get(name, Path(name))
 
 
 def is_number(value: object, low: float, high: float) -> bool:

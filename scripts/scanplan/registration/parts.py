@@ -7,7 +7,7 @@ both parts show contradicts it. What nothing ties is a map of its own.
 """
 
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -89,8 +89,8 @@ def find_changes(driven: DrivenMap) -> list[Change]:
     for row in (row + 1 for row in pauses_after):
         as_it_is = se3.invert_pose(poses[row - 1]) @ poses[row]
         found.setdefault(row, Change(row, as_it_is, RECORDED))
-    for seam in folds.find_seams(driven.places, driven.t_ns, sorted(found)):
-        row = _find_break(driven, seam)
+    for seam in folds.find_seams(driven.places, sorted(found)):
+        row = _find_break(driven, seam, found)
         step = unknown if driven.steps is None else driven.steps[row - 1]
         found[row] = Change(row, step, joins.ODOMETRY)
     return [found[row] for row in sorted(found)]
@@ -138,13 +138,16 @@ def _is_change(jump: joins.MapJump) -> bool:
     return jump.shift_m > limits[0] or jump.turn_deg > limits[1]
 
 
-def _find_break(driven: DrivenMap, seam: folds.Seam) -> int:
-    """Return the row before which the map changed: after a pause, or where nothing is aligned."""
+def _find_break(driven: DrivenMap, seam: folds.Seam, known: Container[int]) -> int:
+    """Return the row before which the map changed: after a pause, or where nothing is aligned.
+
+    Where it is known to have changed it did not change again, unless nothing else is left.
+    """
     is_tied = joins.find_tied(driven.scan_ids, driven.optimised)
     after_pauses = set(pauses.find_pauses(driven.t_ns).tolist())
 
-    def likelihood(row: int) -> tuple[bool, bool, int]:
-        return row in after_pauses, not is_tied[row], -abs(row - seam.likeliest)
+    def likelihood(row: int) -> tuple[bool, bool, bool, int]:
+        return row not in known, row in after_pauses, not is_tied[row], -abs(row - seam.likeliest)
 
     return max(range(seam.after + 1, seam.last + 1), key=likelihood)
 

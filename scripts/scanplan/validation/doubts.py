@@ -24,8 +24,8 @@ _KINDS = ("opening", "wall", "room", "face", *_PARTS)  # in the order of a summa
 _WEAK = "few scans show it, or its place is uncertain"
 _COSTS = {"room": 2.0, "door": 1.7, "passage": 1.7, "wall": 1.4, "window": 1.0, "glass": 1.0}
 # what a wrong one costs its reader, beside others: a room more or less changes the whole plan, a
-# way who comes through, a wall one room, a window light; a walk to what is right costs, too: with
-# costs twice as far apart .69 of the first lines were worth it (.73), drives with 20 wrong elements
+# way who comes through, a wall one room, a window light. A walk to what is right costs, too: costs
+# twice as far apart put rooms that are right before windows that are wrong
 _LEAST_COST = 0.7  # of a gap, which is drawn as not known, and of one side of a wall that stands
 _PART_COST = 0.25  # of an end or a width: decimetres, where all else is right
 _BESIDE_M = 1.0  # from a room to what belongs to it: beyond the thickest wall

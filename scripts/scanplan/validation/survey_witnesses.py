@@ -34,6 +34,8 @@ def measure_plan(
     whole = {name: values[-1] for name, values in found.elements.items()}
     share = float(whole["share"])
     mirrored, where = measure_mirrored_share(plan, rays, xyz_m[:, :2])
+    # a grid map is in metres by its own statement
+    door_m = np.nan if rays.planar else measure_narrowest_door(plan)
     sensor_z_m = np.nan if rays.planar else float(np.median(xyz_m[:, 2]))
     above_m = plan.ceiling_z_m - sensor_z_m
     return [
@@ -42,7 +44,7 @@ def measure_plan(
         state_witness("mirrored rays", mirrored, where=where),
         state_witness("narrowest place", measure_narrowest(plan, xyz_m[:, :2])),
         state_witness("sensor height", sensor_z_m - plan.floor_z_m),
-        state_witness("wide ways", measure_narrowest_way(plan)),
+        state_witness("wide doors", door_m),
         state_witness("head room", measure_head_room(plan, sensor_z_m), above_m=above_m),
     ]
 
@@ -61,8 +63,8 @@ def measure_head_room(plan: FloorPlan, sensor_z_m: float) -> float:
     return 1 - (plan.ceiling_z_m - sensor_z_m) / height_m
 
 
-def measure_narrowest_way(plan: FloorPlan) -> float:
-    """Return how wide the narrowest door or passage of a merged cloud is, metres.
+def measure_narrowest_door(plan: FloorPlan) -> float:
+    """Return how wide the narrowest door or passage is, metres, where no rays were recorded.
 
     NaN of others: where a sensor was carried tells more.
     """

@@ -137,7 +137,7 @@ def _list_values(
         for table in ("wall", "opening", "column", "room")
         if (n := sum(of.is_fault and of.change.table == table for of in told))
     ]
-    undecided = sum(of.verdict == UNDECIDED for of in told)
+    undecided = sum(_rate(of) == UNDECIDED for of in told)
     tied = warn_of_alike(found) or say_tie(compared.tie, page.locale)
     return [
         [("Project", facts.project or compared.b.plan.name, 2), ("Drawing", "As built", 1)],

@@ -147,16 +147,17 @@ def _find_backs(plan: FloorPlan) -> Array:
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     """Yield openings of walls and between rooms.
 
-    None is a pane in no wall that bounds no room, whose floor may end as far before it as before a
-    thick wall, nor what has no leaf or pane and leads from a room into itself. Those that bound one
-    are drawn as far as they do.
+    Left out are what stands in no wall and bounds no room along half of its width (floor may end
+    as far before a pane as before a thick wall), what is there twice (`_find_doubles`), and what
+    has neither leaf nor pane and leads from a room into itself. Panes in no wall are drawn as far
+    as they bound a room.
     """
     leaves = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
     near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, CORNER_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
-    bounds_none = shapely.length(along) < plan.openings["width_m"] / 2
-    is_none = (plan.hosts < 0) & (bounds_none | _find_doubles(plan))
+    is_none = (plan.hosts < 0) & (shapely.length(along) <= plan.openings["width_m"] / 2)
+    is_none |= _find_doubles(plan, ~is_none)
     # a hole in a wall of no room is one all the same
     is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
     is_none |= (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
@@ -178,22 +179,25 @@ def _limit_line(line_m: FloatArray, along: BaseGeometry) -> FloatArray:
     return line_m[0] + np.array([[shares.min()], [shares.max()]]) * way_m
 
 
-def _find_doubles(plan: FloorPlan) -> BoolArray:
-    """Return which openings (m,) lie behind the face of a wall, or beside a wider pane of no wall.
+def _find_doubles(plan: FloorPlan, is_drawn: BoolArray) -> BoolArray:
+    """Return which openings (m,) are others once more.
 
-    They are these openings once more.
+    What is in no wall and lies behind the face of one, or a pane beside one as wide that is drawn.
     """
     lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings))
     widths_m = np.asarray(plan.openings["width_m"], float)
-    is_pane = np.isin(plan.openings["type"], _PANES) & (plan.hosts < 0)
     grounds = overlays.buffer_shapes(lines, CORNER_M, cap_style="flat")
+    is_pane = np.isin(plan.openings["type"], _PANES)
     bodies = overlays.unite_areas(plan.bodies)
+    panes = bodies
     is_double = np.zeros(len(lines), bool)
-    for row in np.flatnonzero(plan.hosts < 0).tolist():
-        wider = grounds[is_pane & (widths_m > widths_m[row])]
-        ground = overlays.unite_areas([bodies, *wider])
-        beside_m = overlays.intersect_lines(lines[row], ground).length
+    for row in np.argsort(-widths_m, kind="stable").tolist():
+        if plan.hosts[row] >= 0 or not is_drawn[row]:
+            continue
+        beside_m = overlays.intersect_lines(lines[row], panes if is_pane[row] else bodies).length
         is_double[row] = beside_m > widths_m[row] / 2
+        if is_pane[row] and not is_double[row]:
+            panes = overlays.unite_areas([panes, grounds[row]])
     return is_double
 
 

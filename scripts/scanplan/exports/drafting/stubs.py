@@ -10,7 +10,8 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.moved_rooms import ON_M
 from scanplan.geometry import overlays
-from scanplan.geometry.lines import left_normals
+from scanplan.geometry.lines import left_normals, line_lengths_m
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.types import BoolArray, Columns, FloatArray
@@ -21,8 +22,8 @@ _MOST = 0.5  # of a wall's length: of what lies beyond for the most part, the fa
 
 
 @dataclass(frozen=True, eq=False)
-class _Facades:
-    """Facades, and what is built.
+class _Building:
+    """Walls, facades and rooms of a building.
 
     Attributes
     ----------
@@ -46,11 +47,12 @@ class _Facades:
 def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     """Return a plan whose walls end at the facades that they cross, and how many ends are cut.
 
-    What bounds a room beyond stays, and what a person drew. Openings in what is cut go with it.
+    What bounds a room beyond stays, and what a person drew, openings among it. Openings that are
+    not whole in what is left go with what is cut.
     """
     lines_m = centrelines_m(plan.walls)
     left_m, right_m = plan.sides_m
-    facades = _Facades(
+    building = _Building(
         lines_m,
         np.where(left_m > right_m, 1.0, -1.0)[:, None] * left_normals(lines_m),
         np.flatnonzero(find_facades(plan)).tolist(),
@@ -59,33 +61,38 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     )
     cut_m = lines_m.copy()
     is_kept = (np.asarray(plan.walls["corrected"], str) != "") | plan.wall_shapes.is_bent
+    by_hand = np.asarray(plan.openings["corrected"], str) != ""
+    is_kept[plan.hosts[by_hand & (plan.hosts >= 0)]] = True
     for wall in np.flatnonzero(~is_kept).tolist():
         for end in (0, 1):
-            places_m = [*_find_crossings(facades, wall, end)]
+            places_m = [*_find_crossings(building, wall, end)]
             if places_m:
                 # as much as may be cut
                 far_m = [float(np.hypot(*(place_m - lines_m[wall, end]))) for place_m in places_m]
                 cut_m[wall, end] = places_m[int(np.argmax(far_m))]
+    # two facades may leave next to nothing between them
+    is_short = line_lengths_m(cut_m) < _MOST * line_lengths_m(lines_m)
+    cut_m[is_short] = lines_m[is_short]
     is_cut = (cut_m != lines_m).any(axis=2)
     if not is_cut.any():
         return plan, 0
-    kept = _find_openings(plan, cut_m)
+    kept = _find_openings(plan, cut_m, is_cut)
     cut = replace(
         plan,
         walls=_set_ends(plan.walls, cut_m),
-        faces=_cut_faces(plan, lines_m, cut_m, is_cut.any(axis=1)),
+        faces=_cut_faces(plan, cut_m, is_cut),
         openings={name: values[kept] for name, values in plan.openings.items()},
     )
     return cut, int(is_cut.sum())
 
 
-def _find_crossings(facades: _Facades, wall: int, end: int) -> Iterator[FloatArray]:
+def _find_crossings(building: _Building, wall: int, end: int) -> Iterator[FloatArray]:
     """Yield where a wall may be cut: where it crosses facades, and bounds no room from there on."""
-    foot_m, tip_m = facades.lines_m[wall, [1 - end, end]]
+    foot_m, tip_m = building.lines_m[wall, [1 - end, end]]
     length_m = float(np.hypot(*(tip_m - foot_m)))
-    for row in facades.rows:
-        from_m, to_m = facades.lines_m[row]
-        foot_out_m, tip_out_m = (np.array([foot_m, tip_m]) - from_m) @ facades.outwards[row]
+    for row in building.rows:
+        from_m, to_m = building.lines_m[row]
+        foot_out_m, tip_out_m = (np.array([foot_m, tip_m]) - from_m) @ building.outwards[row]
         is_through = row != wall and tip_out_m > 0 >= foot_out_m
         if not is_through or tip_out_m - foot_out_m < _OBLIQUE * length_m:
             continue
@@ -96,42 +103,39 @@ def _find_crossings(facades: _Facades, wall: int, end: int) -> Iterator[FloatArr
         if is_off or not END_M <= beyond_m <= _MOST * length_m:
             continue
         beyond = shapely.LineString([place_m, tip_m])
-        beside = overlays.buffer_shapes(beyond, facades.half_m[wall] + 2 * ON_M, cap_style="flat")
-        if overlays.intersect_lines(facades.rooms, beside).length < beyond_m / 2:
+        beside = overlays.buffer_shapes(beyond, building.half_m[wall] + 2 * ON_M, cap_style="flat")
+        if overlays.intersect_lines(building.rooms, beside).length < beyond_m / 2:
             yield place_m
 
 
-def _find_openings(plan: FloorPlan, cut_m: FloatArray) -> BoolArray:
-    """Return which openings (m,) lie in what is left of their walls, or in none."""
-    middles_m = centrelines_m(plan.openings).mean(axis=1)
+def _find_openings(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> BoolArray:
+    """Return which openings (m,) lie in no wall that is cut, or whole in what is left of it."""
+    ends_m = centrelines_m(plan.openings)
+    of_cut: BoolArray = np.any(is_cut, axis=1)[plan.hosts]
     ways_m = (cut_m[:, 1] - cut_m[:, 0])[plan.hosts]
-    along = np.einsum("ij,ij->i", middles_m - cut_m[plan.hosts, 0], ways_m)
-    is_in = (along >= 0) & (along <= np.einsum("ij,ij->i", ways_m, ways_m))
-    return is_in | (plan.hosts < 0)
+    length_m = np.hypot(*ways_m.T)[:, None]
+    along_m = np.einsum("mkj,mj->mk", ends_m - cut_m[plan.hosts, :1], ways_m / length_m)
+    is_in = ((along_m >= -END_M) & (along_m <= length_m + END_M)).all(axis=1)
+    return is_in | (plan.hosts < 0) | ~of_cut
 
 
-def _cut_faces(
-    plan: FloorPlan, lines_m: FloatArray, cut_m: FloatArray, is_cut: BoolArray
-) -> Columns:
+def _cut_faces(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Columns:
     """Return faces as far as their walls go; those that lie in what is cut are left out."""
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist()) if is_cut[row]}
+    rows = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
     faces_m = centrelines_m(plan.faces)
     is_left = np.ones(len(faces_m), bool)
     for face, number in enumerate(plan.faces["wall"].tolist()):
-        if number not in row_of:
+        wall = rows.get(number, -1)
+        if wall < 0 or not is_cut[wall].any():
             continue
-        wall = row_of[number]
         way = cut_m[wall, 1] - cut_m[wall, 0]
-        way = way / np.hypot(*way)
-        along_m = (faces_m[face] - cut_m[wall, 0]) @ way
-        limits_m = np.sort((lines_m[wall] - cut_m[wall, 0]) @ way)
-        most_m = float(np.hypot(*(cut_m[wall, 1] - cut_m[wall, 0])))
+        length_m = float(np.hypot(*way))
+        along_m = (faces_m[face] - cut_m[wall, 0]) @ (way / length_m)
         # at an end that is not cut a face may go on farther than its wall's line
-        low_m = 0.0 if limits_m[0] < 0 else -np.inf
-        high_m = most_m if limits_m[1] > most_m else np.inf
+        low_m, high_m = np.where(is_cut[wall], (0.0, length_m), (-np.inf, np.inf))
         within_m = np.clip(along_m, low_m, high_m)
-        is_left[face] = abs(within_m[1] - within_m[0]) > END_M / 10
-        faces_m[face] += (within_m - along_m)[:, None] * way
+        is_left[face] = abs(within_m[1] - within_m[0]) > SHORTEST_M
+        faces_m[face] += (within_m - along_m)[:, None] * (way / length_m)
     cut = _set_ends(plan.faces, faces_m)
     return {name: values[is_left] for name, values in cut.items()}
 

@@ -46,6 +46,12 @@ class _Facade:
         at_y = np.interp([x0, x1], [self.x0, self.x1], [self.y0, self.y1])
         return _Facade(x0, float(at_y[0]), x1, float(at_y[1]))
 
+    def find_below(self, y: float) -> tuple[float, float]:
+        """Return from which x to which it runs lower than a height; it does not run level."""
+        crossed_x = self.x0 + (y - self.y0) / (self.y1 - self.y0) * (self.x1 - self.x0)
+        at_x = min(max(crossed_x, self.x0), self.x1)
+        return (self.x0, at_x) if self.y0 < self.y1 else (at_x, self.x1)
+
 
 def dimension_facades(
     page: Page,
@@ -139,14 +145,14 @@ def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
         ring = shapely.get_coordinates(shapely.orient_polygons(part).exterior)
         # counterclockwise, what runs to the right is below
         edges += [_Facade(*a, *b) for a, b in itertools.pairwise(ring.tolist()) if b[0] > a[0]]
-    hidden: list[tuple[float, float]] = []
+    level = sorted((edge for edge in edges if edge.is_level), key=lambda e: e.y)
+    askew = [edge for edge in edges if not edge.is_level]
     seen: list[_Facade] = []
-    for edge in sorted(edges, key=lambda e: e.y):
-        if edge.is_level:
-            free = _cut_intervals((edge.x0, edge.x1), hidden)
-            seen += [edge.cut(x0, x1) for x0, x1 in free if x1 - x0 > 0]
-        # an oblique one is no facade, and hides what is behind it all the same
-        hidden.append((edge.x0, edge.x1))
+    for row, edge in enumerate(level):
+        # what runs askew is no facade, and hides what is behind it all the same
+        hidden = [*((e.x0, e.x1) for e in level[:row]), *(e.find_below(edge.y) for e in askew)]
+        free = _cut_intervals((edge.x0, edge.x1), hidden)
+        seen += [edge.cut(x0, x1) for x0, x1 in free if x1 - x0 > 0]
     joined: list[_Facade] = []
     for facade in sorted(seen, key=lambda e: e.x0):
         last = joined[-1] if joined else None

@@ -9,7 +9,6 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
 from scanplan.geometry import se3
-from scanplan.registration import pauses
 from scanplan.registration.drift import recognition
 from scanplan.registration.drift.submaps import Submap
 from scanplan.stage.witness_table import WITNESSES
@@ -18,11 +17,9 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 _NEAR_M = 1.5  # so near that most of what one place shows the other must show, too
 _AGAIN_M = 10.0  # of way between them: another pass
+_ALIKE = 0.05  # that contradicts at most of one place; of the storey above .1 may, or half of it
 _MOST_DIFFER = 0.5  # of places on both sides of a change: of one map few differ
 _LEAF_M = 1.0  # a door's leaf is no wider: a longer piece of wall does not move
-# places that would have to speak against it: a sensor that is carried elsewhere is stopped, and a
-# place tells right nine times of ten; one stop among hundreds of places makes up for two or three
-_A_PAUSE_TELLS = 3
 
 
 def measure_loose_parts(n_scans: int, source: IntArray, target: IntArray) -> Measured:
@@ -139,7 +136,7 @@ def measure_folds(
     most = float(np.nanmax(found.lacking, initial=0.0))
     other = state_witness(f"{kind}other place", most, **more)
     if t_ns is not None:
-        seam, _ = _find_seam(found.pairs, _differ(found), _stood_before(found, t_ns))
+        seam, _ = _find_seam(found.pairs, _tell(found))
         other = other.add(after_s=(t_ns[found.rows[seam - 1]] - t_ns[0]) / 1e9)
     # a localiser's poses fold no corridor onto its twin, and people stand where others stood
     if not drifts:
@@ -157,22 +154,19 @@ class Seam(NamedTuple):
     last: int
 
 
-def find_seams(found: PassedTwice, t_ns: IntArray, begins: Sequence[int]) -> list[Seam]:
+def find_seams(found: PassedTwice, begins: Sequence[int]) -> list[Seam]:
     """Return where the map changed: most places that were passed before and after differ.
 
     Parameters
     ----------
-    t_ns : (n,) int64
-        Stamps of all scans.
     begins : sequence of int, increasing
         Rows before which it is known to have: places passed before and after are left out.
     """
     part = np.searchsorted(np.asarray(begins, np.int64), found.rows[found.pairs], side="right")
-    stood = _stood_before(found, t_ns)
     seams: list[tuple[int, int]] = []
     for one in range(len(begins) + 1):
         of_part = (part == one).all(axis=1)
-        seams += _part_places(found.pairs[of_part], _differ(found)[of_part], stood)
+        seams += _part_places(found.pairs[of_part], _tell(found)[of_part])
     rows = found.rows.tolist()
     # what is seen on both sides of a change may be alike for a while
     return [
@@ -181,26 +175,27 @@ def find_seams(found: PassedTwice, t_ns: IntArray, begins: Sequence[int]) -> lis
     ]
 
 
-def _part_places(pairs: IntArray, differ: BoolArray, stood: BoolArray) -> list[tuple[int, int]]:
+def _part_places(pairs: IntArray, told: IntArray) -> list[tuple[int, int]]:
     """Return before which submaps, from one up to another, the map changed, every time."""
-    if not differ.any():
+    if not (told > 0).any():
         return []
-    first, last = _find_seam(pairs, differ, stood)
+    first, last = _find_seam(pairs, told)
     is_before, is_after = pairs[:, 0] < first, pairs[:, 1] >= first
     is_across = ~is_before & ~is_after
     # chairs that moved at one place are no other map; that none changed may be likeliest
-    if not is_across.any() or differ[is_across].mean() <= _MOST_DIFFER:
+    if not is_across.any() or (told[is_across] > 0).mean() <= _MOST_DIFFER:
         return []
     return [
-        *_part_places(pairs[is_before], differ[is_before], stood),
+        *_part_places(pairs[is_before], told[is_before]),
         (first, last),
-        *_part_places(pairs[is_after], differ[is_after], stood),
+        *_part_places(pairs[is_after], told[is_after]),
     ]
 
 
-def _differ(found: PassedTwice) -> BoolArray:
-    """Return which places (n,) looked different each time."""
-    return found.lacking > WITNESSES["other place"].limit
+def _tell(found: PassedTwice) -> IntArray:
+    """Return of places (n,) 1 where they looked different each time, -1 alike, 0 between."""
+    is_alike = ~(found.lacking > _ALIKE)
+    return np.where(found.lacking > WITNESSES["other place"].limit, 1, -is_alike.astype(np.int64))
 
 
 def _are_near(xy_m: FloatArray, others_xy_m: FloatArray) -> BoolArray:
@@ -208,31 +203,23 @@ def _are_near(xy_m: FloatArray, others_xy_m: FloatArray) -> BoolArray:
     return np.linalg.norm(xy_m[:, None] - others_xy_m[None], axis=2) < _NEAR_M
 
 
-def _stood_before(found: PassedTwice, t_ns: IntArray) -> BoolArray:
-    """Return before which submaps (k,) the sensor stood: after the one before it."""
-    after = pauses.find_pauses(t_ns)
-    n_before = np.searchsorted(after, found.rows, side="right")
-    return np.diff(n_before, prepend=n_before[:1]) > 0
-
-
-def _find_seam(pairs: IntArray, differ: BoolArray, stood: BoolArray) -> tuple[int, int]:
+def _find_seam(pairs: IntArray, told: IntArray) -> tuple[int, int]:
     """Return before which submap the map changed, the first and the last that may be.
 
-    Most pairs across it differ, others do not; a change during a pause is likelier.
+    Most pairs across it differ, others are alike.
 
     Parameters
     ----------
     pairs : (n, 2) int
         Submaps of one place, the later one first.
-    differ : (n,) bool
-    stood : (k,) bool
-        See `_stood_before`.
+    told : (n,) int
+        As `_tell` returns it.
     """
     later, earlier = pairs.T
     seams = np.arange(1, int(later.max()) + 1)
     is_across = (earlier < seams[:, None]) & (later >= seams[:, None])
-    told = (is_across == differ).sum(axis=1) + _A_PAUSE_TELLS * stood[seams]
-    first = int(np.argmax(told))
-    beyond = np.flatnonzero(told[first:] < told[first])
-    last = first + int(beyond[0]) - 1 if len(beyond) else len(told) - 1
+    score = np.where(is_across, told, -told).sum(axis=1)
+    first = int(np.argmax(score))
+    beyond = np.flatnonzero(score[first:] < score[first])
+    last = first + int(beyond[0]) - 1 if len(beyond) else len(score) - 1
     return int(seams[first]), int(seams[last])
