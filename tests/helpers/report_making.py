@@ -16,7 +16,7 @@ PAGE = Path(__file__).resolve().parents[2] / "workflow/report/page"
 PAGE_FILES = (
     *("page.html.j2", "tables.html.j2", "page.css", "edit.css"),
     *("page.js", "edits.js", "shapes.js", "areas.js", "drawn_edits.js"),
-    *("tools.js", "choices.js", "faults.js"),
+    *("tools.js", "returns.js", "choices.js", "faults.js"),
     *("elements.js", "saying.js", "solid_edits.js", "solid.js", "three.js"),
     *("seen.js", "walk.js", "save.js"),
 )

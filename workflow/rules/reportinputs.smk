@@ -81,7 +81,7 @@ def page_files(*names, folder="workflow/report/page"):
 REPORT_PAGE = page_files(
     *("page.html.j2", "tables.html.j2", "page.css", "edit.css"),
     *("page.js", "edits.js", "shapes.js", "areas.js", "drawn_edits.js"),
-    *("tools.js", "choices.js"),
+    *("tools.js", "returns.js", "choices.js"),
     *("elements.js", "saying.js", "solid_edits.js", "solid.js", "three.js"),
     *("faults.js", "seen.js", "walk.js", "save.js"),
 )

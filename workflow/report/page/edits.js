@@ -47,6 +47,16 @@ const edits = (() => {
     }
   }
 
+  // what was just said, more exactly: of the same step, unless it was taken back since
+  function refine(entry, more) {
+    const last = steps.at(-1);
+    if (done < steps.length || !last?.after || said(last.after) !== said(entry)) return false;
+    steps = [...steps.slice(0, -1), { ...last, after: { ...last.after, ...more } }];
+    store();
+    changed();
+    return true;
+  }
+
   // what was changed from one list to another, as steps on a third: nothing is lost where both changed
   function rebase(before, after, onto) {
     const more = [];
@@ -179,6 +189,7 @@ const edits = (() => {
     fresh: () => current.filter((entry) => !has(given, entry)),
     gone: () => given.filter((entry) => !has(current, entry)),
     add: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
+    refine,
     takeBack: (entry) => step(entry, null),
     bring: (entry) => step(current.find((old) => identify(old) === identify(entry)), entry),
     adopt, know, tell: said,

@@ -110,8 +110,14 @@ const elements = (() => {
 
   // --- measuring tape, and what is drawn ---
   const measure = document.getElementById("measure");
-  const added = (kind, line) =>
-    edits.add(kind === "wall" ? { element: "wall", action: "add", line } : { element: "opening", action: "add", line, kind });
+  async function added(kind, line) {
+    if (kind !== "wall") return edits.add({ element: "opening", action: "add", line, kind });
+    const entry = { element: "wall", action: "add", line };
+    const settled = returns.settle(line); // among the walls without it
+    edits.add(entry);
+    const found = await settled;
+    if (found && edits.refine(entry, { line: found.line })) planView.say(found.said, 5);
+  }
   measure.addEventListener("click", () => {
     closeCard();
     const isOn = measure.getAttribute("aria-pressed") === "true";
@@ -128,6 +134,7 @@ const elements = (() => {
       const { kind } = drawn.dataset;
       closeCard();
       menu.open = false;
+      if (kind === "wall") returns.read();
       plan.focus({ preventScroll: true });
       tools.begin(kind === "wall" ? "wall" : "opening", (line) => added(kind, line), "Tap where it begins, then where it ends");
     });

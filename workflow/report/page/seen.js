@@ -135,5 +135,5 @@ const seen = (() => {
   if (solid.isMissing()) stand.remove();
   // an end that is not sure lies elsewhere than the middle of its wall
   const placeOf = (element) => data.of[element] && target(data.of[element]).slice(0, 2);
-  return { show, hide, placeOf };
+  return { show, hide, placeOf, isPlanar: data.planar };
 })();

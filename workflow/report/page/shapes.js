@@ -220,5 +220,5 @@ const shapes = (() => {
     }
     return found;
   }
-  return { read, has, distance, within, areaOf, pieces, lengthIn, part, follow, gapOf, between };
+  return { cross, minus, plus, unit, read, has, distance, within, areaOf, pieces, lengthIn, part, follow, gapOf, between };
 })();

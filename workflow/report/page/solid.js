@@ -363,5 +363,5 @@ const solid = (() => {
     const act = tools[name];
     tools[name] = (...given) => { hide(); return act(...given); };
   }
-  return { show, hide, isOn: () => isOn, isMissing, standAt, points, colourAt, elementAt, scene: () => scene };
+  return { show, hide, isOn: () => isOn, isMissing, standAt, points, height_m: data.height_m, colourAt, elementAt, scene: () => scene };
 })();

@@ -208,5 +208,5 @@ const tools = (() => {
       if (moved) act(moved);
     };
   }
-  return { begin, stop, move, stretch, isBusy: () => tool !== null || moving !== null };
+  return { begin, stop, move, stretch, walls: () => walls, isBusy: () => tool !== null || moving !== null };
 })();
