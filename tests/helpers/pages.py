@@ -39,13 +39,18 @@ def text_of(page, selector):
 
 
 def press(page, words, within="body"):
-    """Click a button that can be seen, by its words."""
-    place = page.run(
+    """Click a button that can be seen, by its words, where it has come to rest."""
+    find = (
         f"(b => {{ b.scrollIntoView({{block: 'nearest'}}); const r = b.getBoundingClientRect();"
         " return [r.x + r.width / 2, r.y + r.height / 2]; })"
         f"([...document.querySelectorAll('{within} button, {within} summary')]"
         f".find(b => b.textContent.trim() === {words!r} && b.getClientRects().length))"
     )
+    place = page.run(find)
+    deadline = time.monotonic() + _PATIENCE_S
+    while (after := page.run(find)) != place and time.monotonic() < deadline:
+        place = after
+        time.sleep(0.025)
     click(page, place)
 
 

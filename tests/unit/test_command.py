@@ -148,8 +148,11 @@ def test_with_the_server_its_run_ends_and_its_settings_go(tmp_path, sent):
     (modules / "snakemake.py").write_text(AT_WORK)
     places = [str(command.SNAKEFILE.parents[1] / "scripts"), str(modules)]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(places), "TMPDIR": str(scratch)}
-    # what runs the tests may ignore Ctrl-C, and what it begins inherits that
-    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    # what runs the tests may ignore Ctrl-C or a lost terminal, and what it begins inherits that
+    heard = (
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+        "signal.signal(signal.SIGHUP, signal.SIG_DFL); "
+    )
     words = [sys.executable, "-c", heard + MAIN, "open", str(results), "--no-browser"]
     with (
         subprocess.Popen(words, env=env, stdout=subprocess.PIPE, text=True) as opened,
