@@ -12,11 +12,10 @@ from scanplan.design.drawn_sight import see_storey
 from scanplan.design.drawn_storey import DrawnStorey, DrawnWall
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals, line_lengths_m
-from scanplan.plan.floorplan import FloorPlan, line_shapes, make_floorplan
+from scanplan.plan.floorplan import FloorPlan, line_columns, line_shapes, make_floorplan
 from scanplan.store import schemas, tables
 from scanplan.types import Array, Columns, FloatArray
 
-_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _SURE = {"p_true": 1.0, "p_wall": 1.0, "p_solid": 1.0, "p_kind": 1.0, "state": "observed"}
 _SKIN_M = 1e-3  # around the ground of other walls: a face that lies in it is seen by nobody
 _DIGITS = 9  # of coordinates: a nanometre, beyond what turning leaves
@@ -183,9 +182,8 @@ def _nothing(dtype: np.dtype) -> object:
     return {"O": "", "f": np.nan, "b": False}.get(dtype.kind, -1)
 
 
-def _ends(lines_m: FloatArray) -> dict[str, FloatArray]:
-    flat_m = np.round(lines_m, _DIGITS).reshape(-1, 4)
-    return {name: flat_m[:, i].copy() for i, name in enumerate(_ENDS)}
+def _ends(lines_m: FloatArray) -> Columns:
+    return line_columns(np.round(lines_m, _DIGITS))
 
 
 def _pack(shapes: Array) -> Array:

@@ -48,6 +48,11 @@ def centrelines_m(columns: Columns) -> FloatArray:
     return ends.astype(float).reshape(-1, 2, 2)
 
 
+def line_columns(lines_m: FloatArray) -> Columns:
+    """Return the columns of which `centrelines_m` makes lines (n, 2, 2)."""
+    return dict(zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True))
+
+
 def draw_axis(row: Mapping[str, Any]) -> shapely.LineString:
     """Return the line of a row with such columns: of a curved wall its arc, in short chords."""
     ends_m = np.array([row[name] for name in _ENDS], float).reshape(2, 2)

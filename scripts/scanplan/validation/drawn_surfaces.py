@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import overlays
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns, line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
@@ -105,13 +105,13 @@ def _gather(surfaces: Sequence[_Surface]) -> DrawnSurfaces:
             ends_of.setdefault(element, ends_m)
     elements = sorted(ends_of)
     row_of = {element: row for row, element in enumerate(elements)}
-    ends_m = np.array([ends_of[element] for element in elements]).reshape(-1, 4)
+    ends_m = np.array([ends_of[element] for element in elements])
     columns: dict[str, Array] = {
         "kind": np.array([kind for kind, _, _ in elements], object),
         "number": np.array([number for _, number, _ in elements], np.int32),
         "span": np.array([span for _, _, span in elements], np.int32),
     }
-    columns |= dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), ends_m.T.copy(), strict=True))
+    columns |= line_columns(ends_m)
     return DrawnSurfaces(
         np.array([s.ends_m for s in surfaces], float).reshape(-1, 2, 2),
         np.array([s.z_m for s in surfaces], float).reshape(-1, 2),

@@ -26,10 +26,7 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     """
     lines_m = centrelines_m(plan.walls)
     along_m = lines_m[:, 1] - lines_m[:, 0]
-    left = left_normals(lines_m)
-    left_m, right_m = plan.sides_m
-    # what is assumed lies behind
-    behind = np.where((left_m > right_m)[:, None], left, -left)[:, None]
+    behind = find_behind(plan)[:, None]
     places_m = lines_m[:, None, 0] + along_m[:, None] * _SHARES[:, None]
     ways_m = np.stack([places_m + _NEAR_M * behind, places_m + _ACROSS_M * behind], axis=2)
     ways = line_shapes(ways_m.reshape(-1, 2, 2))
@@ -40,6 +37,16 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     building = envelope.outline_plan(replace(plan, free=no_floor))
     is_blocked |= shapely.contains_xy(building, ways_m[:, :, 1, 0], ways_m[:, :, 1, 1])
     return ~plan.thick & (is_blocked.mean(axis=1) < 1 / 2)
+
+
+def find_behind(plan: FloorPlan) -> FloatArray:
+    """Return unit vectors (n, 2) square to walls: of those seen from one side to behind their face.
+
+    What is assumed of a wall lies there.
+    """
+    left = left_normals(centrelines_m(plan.walls))
+    left_m, right_m = plan.sides_m
+    return np.where((left_m > right_m)[:, None], left, -left)
 
 
 def limit_backs(walls: WallLines, behind_m: FloatArray) -> FloatArray:

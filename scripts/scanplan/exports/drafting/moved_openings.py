@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes
-from scanplan.plan.floorplan import centrelines_m
+from scanplan.plan.floorplan import centrelines_m, line_columns
 from scanplan.types import Columns, FloatArray, IntArray
 
 _SIGMA_M = 0.01  # of a width, by good scans
@@ -63,8 +63,12 @@ def move_openings(
         rows = np.flatnonzero(hosts == wall)
         ends_m[rows] = _place_along(ends_m[rows], wanted_m[rows], lines_m[wall])
     made_m = np.hypot(*(ends_m[:, 1] - ends_m[:, 0]).T)
-    changed = dict(zip(("x0_m", "y0_m", "x1_m", "y1_m"), ends_m.reshape(-1, 4).T, strict=True))
-    return {**openings, **changed, "width_m": made_m, "width_changed_m": made_m - widths_m}
+    return {
+        **openings,
+        **line_columns(ends_m),
+        "width_m": made_m,
+        "width_changed_m": made_m - widths_m,
+    }
 
 
 def _place_along(ends_m: FloatArray, wanted_m: FloatArray, line_m: FloatArray) -> FloatArray:

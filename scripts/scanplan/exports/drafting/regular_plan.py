@@ -17,11 +17,10 @@ from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
-from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
 from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray
 
-_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
 MEASURED, ASSUMED = "measured", "assumed"
 """Where a wall's thickness is from."""
@@ -125,7 +124,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     openings = {**openings, "thickness_m": np.append(thickness_m, np.nan)[plan.hosts]}
     turned_deg = np.degrees(_turn_between(walls.lines_m, moved.lines_m))
     changed = {
-        **_ends_of(drawn_m),
+        **line_columns(drawn_m),
         "thickness_m": thickness_m,
         "moved_m": adjusted.moved_m,
         "turned_deg": turned_deg,
@@ -166,7 +165,7 @@ def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
     for face, wall in enumerate(plan.faces["wall"].tolist()):
         if wall in row_of:
             lines_m[face] = moved.move_points(lines_m[face], row_of[wall])
-    return {**plan.faces, **_ends_of(lines_m)}
+    return {**plan.faces, **line_columns(lines_m)}
 
 
 def _move_rooms(plan: FloorPlan, moved: MovedWalls) -> Columns:
@@ -188,10 +187,6 @@ def _leave_doubts(columns: Columns) -> Columns:
     if "corrected" in kept:
         kept["corrected"] = np.full(len(kept["corrected"]), "", object)
     return kept
-
-
-def _ends_of(lines_m: FloatArray) -> Columns:
-    return dict(zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True))
 
 
 def _turn_between(before_m: FloatArray, after_m: FloatArray) -> FloatArray:

@@ -6,14 +6,13 @@ import numpy as np
 import shapely
 
 from scanplan.exports.drafting import moved_rooms, moved_walls
-from scanplan.exports.drafting.facades import find_facades
+from scanplan.exports.drafting.facades import find_behind, find_facades
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
-from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.tolerances import CORNER_M, END_M
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import BoolArray
 
 BARE = ("passage", "gap")
 """Types of openings without a leaf or a pane."""
@@ -94,19 +93,15 @@ def _find_outside(plan: FloorPlan) -> BoolArray:
     lengths_m = np.hypot(*ways_m.T)
     ways = ways_m / lengths_m[:, None]
     shapes = floorplan.line_shapes(lines_m)
+    behind = find_behind(plan)
     outside = np.zeros(len(lines_m))
     for facade in np.flatnonzero(find_facades(plan)).tolist():
-        is_oblique = np.abs(ways @ left_normals(lines_m)[facade]) >= _OBLIQUE
-        ground = shapely.Polygon([*lines_m[facade], *lines_m[facade][::-1] + _behind(plan, facade)])
+        is_oblique = np.abs(ways @ behind[facade]) >= _OBLIQUE
+        back_m = lines_m[facade][::-1] + _OUTSIDE_M * behind[facade]
+        ground = shapely.Polygon([*lines_m[facade], *back_m])
         share = shapely.length(overlays.intersect_lines(shapes, ground)) / lengths_m
         outside = np.maximum(outside, np.where(is_oblique, share, 0.0))
     return outside > 1 / 2
-
-
-def _behind(plan: FloorPlan, wall: int) -> FloatArray:
-    left_m, right_m = plan.sides_m
-    side = 1.0 if left_m[wall] > right_m[wall] else -1.0
-    return side * _OUTSIDE_M * left_normals(centrelines_m(plan.walls)[[wall]])[0]
 
 
 def _find_within(plan: FloorPlan) -> BoolArray:

@@ -7,16 +7,15 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.exports.drafting.facades import find_facades
+from scanplan.exports.drafting.facades import find_behind, find_facades
 from scanplan.exports.drafting.moved_rooms import ON_M
 from scanplan.geometry import overlays
-from scanplan.geometry.lines import left_normals, line_lengths_m
+from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import SHORTEST_M
-from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.types import BoolArray, Columns, FloatArray
 
-_ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 _OBLIQUE = 0.17  # sine of ten degrees: what is turned less goes along a facade, not through it
 _MOST = 0.5  # of a wall's length: of what lies beyond for the most part, the facade may be wrong
 
@@ -51,10 +50,9 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     not whole in what is left go with what is cut.
     """
     lines_m = centrelines_m(plan.walls)
-    left_m, right_m = plan.sides_m
     building = _Building(
         lines_m,
-        np.where(left_m > right_m, 1.0, -1.0)[:, None] * left_normals(lines_m),
+        find_behind(plan),
         np.flatnonzero(find_facades(plan)).tolist(),
         np.nan_to_num(np.asarray(plan.walls["thickness_m"], float)) / 2,
         overlays.unite_areas(plan.areas).boundary,
@@ -79,7 +77,7 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     kept = _find_openings(plan, cut_m, is_cut)
     cut = replace(
         plan,
-        walls=_set_ends(plan.walls, cut_m),
+        walls={**plan.walls, **line_columns(cut_m)},
         faces=_cut_faces(plan, cut_m, is_cut),
         openings={name: values[kept] for name, values in plan.openings.items()},
     )
@@ -136,10 +134,5 @@ def _cut_faces(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Columns
         within_m = np.clip(along_m, low_m, high_m)
         is_left[face] = abs(within_m[1] - within_m[0]) > SHORTEST_M
         faces_m[face] += (within_m - along_m)[:, None] * (way / length_m)
-    cut = _set_ends(plan.faces, faces_m)
+    cut = {**plan.faces, **line_columns(faces_m)}
     return {name: values[is_left] for name, values in cut.items()}
-
-
-def _set_ends(columns: Columns, lines_m: FloatArray) -> Columns:
-    ends = zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True)
-    return {**columns, **dict(ends)}
