@@ -21,6 +21,7 @@ from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.fronts import find_fronts
+from scanplan.plan.model.likely_openings import settle_openings
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import (
@@ -228,6 +229,7 @@ def make_plan(
     survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, designed, threads)
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
+    surfaces = _settle(surfaces, spaces, settings.openings.max_door_m)
     walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
     floor_z_m = rays.ground_z_m
     cut_walls = wall_faces.cut_wall_faces(
@@ -517,6 +519,17 @@ class _Survey:
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
         return free_space.union_on_grid([self.seen, *grounds]) if grounds else self.seen
+
+
+def _settle(surfaces: _Surfaces, spaces: _Spaces, max_door_m: float) -> _Surfaces:
+    """Return surfaces without openings that are unlikely where rooms lie as they do."""
+    settled = [
+        (part, top_m)
+        for wall, top_m in zip(surfaces.walls, surfaces.tops_m, strict=True)
+        for part in settle_openings(wall, spaces.rooms, max_door_m)
+    ]
+    walls, tops_m = [wall for wall, _ in settled], [top_m for _, top_m in settled]
+    return replace(surfaces, walls=walls, tops_m=tops_m)
 
 
 def _stand_plumb(rays: RaySet) -> FloatArray:

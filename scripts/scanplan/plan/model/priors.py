@@ -4,6 +4,7 @@ Each number is a share or a length that a person can state. Where it was set on 
 those of the tuning half of the bench of realistic floors.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -41,6 +42,7 @@ _ENDS = np.array(
 # to square differs from sensor to sensor, so that what passes hardly speaks against a front
 _PASSED = np.array((0.002, 1, 0.002, 0.002, 1, 0.002, 0.002))
 """How likely the same are where the sensor was carried through: a pose may be wrong."""
+_LEAST_P = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
 _WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
 ROWS_A_WITNESS = 10
@@ -93,6 +95,13 @@ _AT_NEXT = {OPEN: 0.75, SOLID: 0.2, GLASS: 0.03, DOOR: 0.01, SHUT: 0.01}
 lintel, or in the plane the usual width of a door, says otherwise."""
 _BETWEEN_WALLS = {OPEN: 20.0, DOOR: 0.2}
 """How many times as likely as elsewhere from one wall to another that cross a line: a corridor."""
+LEAST_USUAL_M = {"door": 0.6, "window": 0.8, "glass": 0.8}
+"""Narrower openings are likelier joints: the least leaf (DIN 18101), and sashes."""
+_LABEL_SHARE, _WIDTH_POWER, _WITHIN_ODDS = 0.41, 9.4, 12.0
+# what labels say of an opening counts by a share, as columns beside one another err alike; its odds
+# fall with a power of the width below the least usual one; so many doors are between two rooms,
+# and windows at the edge of what is known, for each that is within. By the openings of the tuning
+# half, in space and in the plane alike (logistic regression)
 _BEAM_M, _BEAM = (2.1, 2.9), 0.1  # what is open ends below a beam so high above the floor so often
 
 
@@ -240,6 +249,25 @@ def log_ends(*, line: int, goes_on: bool) -> FloatArray:
     beyond what was seen of it, to the next wall, it is open.
     """
     return _log_shares(_AT_NEXT if goes_on else _AT_ENDS[line])
+
+
+def weigh_opening(kind: str, p_labels: float, width_m: float, rooms: tuple[int, int]) -> float:
+    """Return the log odds that an opening is one, and no joint, mirror or board.
+
+    `p_labels` is how likely its labels are (NaN: not weighed), `rooms` are those beside it (-1:
+    none is known).
+
+    >>> round(weigh_opening("door", 0.99, 0.9, (0, 1)), 2)
+    1.88
+    >>> round(weigh_opening("window", 0.99, 0.6, (0, 1)), 2)
+    -3.31
+    """
+    p = min(max(p_labels, _LEAST_P), 1 - _LEAST_P)
+    of_labels = 0.0 if math.isnan(p_labels) else math.log(p / (1 - p))
+    usual_m = LEAST_USUAL_M[kind]
+    narrow = math.log(max(min(width_m, usual_m), COLUMN_M) / usual_m)
+    is_within = rooms[0] == rooms[1] if kind == "door" else min(rooms) >= 0
+    return _LABEL_SHARE * of_labels + _WIDTH_POWER * narrow - is_within * math.log(_WITHIN_ODDS)
 
 
 def log_between_walls() -> FloatArray:
