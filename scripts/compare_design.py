@@ -115,6 +115,6 @@ if __name__ == "__main__":
             settings=snakemake.params.settings,
             limits=snakemake.params.limits,
             unwanted=snakemake.params.unwanted,
-            words=snakemake.params.receiver["words"],
+            words=snakemake.params.words,
             version=code_files.state_version(),
         )

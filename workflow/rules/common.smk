@@ -489,6 +489,12 @@ def words_of_receiver(wildcards):
     )
 
 
+def words_of_dataset(wildcards):
+    """The words alone, of a stage that names no layers."""
+    settings = DATASETS[wildcards.dataset].settings
+    return words_file.read_words(settings["plan"]["export"]["language"])
+
+
 def source_of_results(wildcards):
     """What the results of the job's dataset are made of."""
     return DATASETS[wildcards.dataset].source

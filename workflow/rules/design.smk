@@ -24,7 +24,7 @@ if any(found.designs for found in DATASETS.values()):
         params:
             code=code_of("compare_design"),
             settings=setting(stage_settings.select_design),
-            receiver=words_of_receiver,
+            words=words_of_dataset,
             limits=limits_of_design,
             # of an earlier design, they would tell of that one
             unwanted=models_of_earlier_design,
