@@ -55,6 +55,15 @@ def test_all_files_are_there_and_the_copy_says_of_each_wall_how_it_was_built(com
     assert all(of["Tolerance"] in (0.016, 0.02) for of in stated)
 
 
+def test_names_of_layers_rerun_nothing_and_a_language_the_sheet(compared):
+    for exported, is_rerun in (("layers: din", False), ("language: de", True)):
+        settings = f"plan: {{design: {{file: room.ifc}}, export: {{{exported}}}}}\n"
+        (compared.folder / "otherwise.yaml").write_text(settings)
+        result = compared.run("design", "--dry-run", *given("otherwise.yaml"))
+        assert result.returncode == 0, result.stderr
+        assert ("compare_design" in result.stdout + result.stderr) is is_rerun
+
+
 def test_a_survey_without_design_is_refused_in_a_line(compared):
     result = compared.run("design", "--dry-run", *given("config/config.yaml"))
     lines = [line for line in result.stderr.splitlines() if line.startswith("scanplan: ")]
