@@ -8,16 +8,18 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers import toy_rooms
 from helpers.changing_floor import DOOR, INNER, OUTER, SENSORS, sides, survey, without
 from helpers.changing_floor import cast as measure
+from helpers.default_settings import SETTINGS
 from helpers.sheet_words import LANGUAGES, find_english
+from scanplan.arrays import array_plan
 from scanplan.changes import growth, growth_table
 from scanplan.changes.contributions import rate_contributions, sum_lengths_m
-from scanplan.changes.joined_scans import Drive, JoinedScans, check_alike, place_drive
+from scanplan.changes.joined_scans import Drive, JoinedScans, place_drive
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.stale_rays import StalePlaces
 from scanplan.changes.verdicts import CHANGED, GONE, MOVED, SAME, Change
-from scanplan.errors import StageError
 from scanplan.exports import drawing
 from scanplan.exports.changes import compared_sheet, growth_sheet
 from scanplan.rays.azimuth_sectors import middles_rad
@@ -219,13 +221,83 @@ def test_the_sheet_of_both_is_in_the_language_of_the_receiver(language):
     assert find_english(compose, language) == {*grown.names}
 
 
-def test_surveys_of_which_no_one_plan_can_be_made_are_refused_in_a_line():
-    flat, solid = own_scans([INNER], [DOOR], WEST), own_scans([INNER], [DOOR], EAST)
-    solid[0].planar = False
-    plan = survey().plan
-    with pytest.raises(StageError, match=r"planar.*target changes") as fault:
-        check_alike([(plan, flat), (plan, solid)])
-    assert "\n" not in str(fault.value)
+PARTED = np.array(
+    [
+        *((0, 0, 9, 0), (9, 0, 9, 4), (0, 4, 9, 4), (0, 0, 0, 4)),
+        *((6, 0, 6, 1.5), (6, 2.4, 6, 4), (6.2, 0, 6.2, 1.5), (6.2, 2.4, 6.2, 4)),
+        *((6, 1.5, 6.2, 1.5), (6, 2.4, 6.2, 2.4)),
+    ],
+    float,
+)
+"""A room of 6 m, a wall of 0.2 m with a doorway of 0.9 m, and a room of 2.8 m, 4 m deep."""
+LIFTED_M = 0.7
+"""Of the map in space above that of the planar scanner, whose plane is 0.5 m above the floor."""
+
+
+def toy_drive(name, make, places_m, *, lift_m=0.0):
+    """A drive through the two rooms; heights are of a map so far below the floor's."""
+    up_m = np.array([0, 0, lift_m])
+    poses = np.tile(np.eye(4), (len(places_m), 1, 1))
+    poses[:, :3, 3] = np.array(places_m, float) + up_m
+    n = len(places_m)
+    scans = [
+        (i, make(np.array(place_m), PARTED, seed=i) + up_m) for i, place_m in enumerate(places_m)
+    ]
+    store = Store(scans, PlaneMotion(), planar=make is toy_rooms.laser)
+    covariance = np.tile(np.diag([4e-4, 4e-4, 1e-6]), (n, 1, 1))
+    known = RegisteredScans(np.arange(n, dtype=np.int32), 10**9 * np.arange(n), poses, covariance)
+    return name, (store, known)
+
+
+def space_and_plane():
+    """Scans in space of the first room and in the plane of both, planar ones given first."""
+    across = [(x, y) for y in (1.2, 2.8) for x in (1.0, 2.0, 3.0, 4.0, 5.0)]
+    beyond = [(x, y) for y in (1.0, 2.0, 3.0) for x in (6.8, 7.6, 8.4)]
+    solid = toy_drive("s", toy_rooms.vlp16, [(*xy, 0.9) for xy in across], lift_m=LIFTED_M)
+    flat = toy_drive("p", toy_rooms.laser, [(*xy, 0.5) for xy in (*across, *beyond)])
+    level = replace(survey().plan, floor_z_m=LIFTED_M)
+    drives = [
+        place_drive(own, replace(level, name=name), PlaneMotion(), level)
+        for name, own in (flat, solid)
+    ]
+    return JoinedScans(drives, SETTINGS), len(across)
+
+
+def test_planar_scans_among_others_are_of_one_elevation():
+    joined, n_solid = space_and_plane()
+    assert not joined.planar and [part.planar for part in joined.parts] == [False, True]
+    solid, flat = joined.parts
+    assert [*solid.scan_ids, *flat.scan_ids] == joined.scan_ids.tolist()
+    assert len(solid.scan_ids) == n_solid
+    for part, is_lost in ((solid, False), (flat, True)):
+        for scan_id, xyz_m in part.scans():
+            np.testing.assert_array_equal(xyz_m, next(joined.scans([scan_id]))[1])
+            assert (joined.left_out[scan_id] == is_lost).all()
+            # alone they are planar scans, of which all is known
+            assert not part.left_out[scan_id].any()
+            if part is flat:
+                np.testing.assert_allclose(xyz_m[:, 2], LIFTED_M + 0.5, atol=1e-6)
+
+
+@pytest.mark.parametrize(("own_m", "above_m"), [(0.5, 0.5), (0.0, 0.3), (9.0, 0.3)])
+def test_a_planar_survey_is_as_high_as_its_map_says_if_one_may_be_mounted_there(own_m, above_m):
+    _, own = toy_drive("p", toy_rooms.laser, [(1.0, 1.0, own_m)])
+    level = replace(survey().plan, floor_z_m=LIFTED_M)
+    drive = place_drive(own, level, PlaneMotion(), level)
+    assert drive.known.map_from_sensor[0, 2, 3] == pytest.approx(LIFTED_M + above_m)
+    assert place_drive(own, level, PlaneMotion(), None).lift_m == 0.0
+
+
+def test_one_plan_of_space_and_plane_has_the_rooms_of_both():
+    joined, _ = space_and_plane()
+    made = array_plan.assemble_plan(joined, "both", 1)
+    plan = array_plan.rate_plan(made, joined)
+    assert sorted(plan.rooms["area_m2"]) == pytest.approx([2.8 * 4, 6 * 4], abs=0.2)
+    assert plan.openings["type"].tolist() == ["door"]
+    assert plan.openings["width_m"] == pytest.approx([0.9], abs=0.02)
+    assert plan.floor_z_m == pytest.approx(LIFTED_M, abs=0.03)
+    far = np.minimum(plan.walls["x0_m"], plan.walls["x1_m"]) > 8.9
+    assert far.sum() == 1 and (plan.walls["p_true"] > 0.5).all()
 
 
 def test_surveys_lie_on_one_floor_or_under_one_ceiling():

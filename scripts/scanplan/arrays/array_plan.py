@@ -252,10 +252,15 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
     StageError
         If the scans show no wall.
     """
-    chosen_ids = _choose_scans(placed)
+    parts = placed.parts
+    chosen = [_choose_scans(part) for part in parts]
+    chosen_ids = np.concatenate(chosen)
     scan_ids = np.sort(chosen_ids)
     rows = placed.rows(scan_ids)
-    found = _extract_segments(placed, scan_ids)
+    by_part = [
+        _extract_segments(part, np.sort(ids)) for part, ids in zip(parts, chosen, strict=True)
+    ]
+    found = {name: np.concatenate([of[name] for of in by_part]) for name in by_part[0]}
     n_segments = len(found["scan_id"])
     messages.check_segments(_ORIGIN, found, np.ones(n_segments, bool), len(rows))
     rays = ray_set.gather_rays(
@@ -265,7 +270,8 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
         left_out=placed.left_out,
         threads=threads,
     )
-    find_seen = partial(free_space.find_seen_floor, placed.scans(), placed.sensors_m)
+    flat = parts[-1]
+    find_seen = partial(free_space.find_seen_floor, flat.scans(), flat.sensors_m)
     find_dense = partial(
         fronts.gather_dense_rays,
         placed.scans,
@@ -282,12 +288,13 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
         planning.make_plan_settings(**stage_settings.select_plan(placed.settings)),
         poses[rows, :3, 2],
         placed.known.covariance[rows],
-        find_seen=find_seen if placed.planar else None,
+        find_seen=find_seen if flat.planar else None,
         find_dense=find_dense if placed.planar else None,
         threads=threads,
     )
     messages.check_plan(_ORIGIN, plan, n_segments, len(rows))
-    z_m = np.empty(0) if placed.planar else rays.xyz_m[:, 2]
+    # planar scans are the last
+    z_m = np.empty(0) if placed.planar else rays.xyz_m[: rays.first[len(chosen[0])], 2]
     export = stage_settings.select_files(placed.settings)
     drawn = make_floorplan(
         {table: getattr(plan, table) for table in planning.TABLES},

@@ -62,6 +62,11 @@ class Placed(Protocol):
         """How many points each scan has, (n,) int64."""
         ...
 
+    @property
+    def parts(self) -> Sequence["Placed"]:
+        """Those of each kind of sensor, in space or in one plane, numbered as here."""
+        ...
+
     def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
         ...
@@ -93,6 +98,11 @@ class PlacedScans:
     def n_points(self) -> IntArray:
         """How many points each scan has, (n,) int64."""
         return np.array([len(self._given.scans[i].xyz_m) for i in self.scan_ids], np.int64)
+
+    @property
+    def parts(self) -> list["PlacedScans"]:
+        """All of them: they are of one sensor."""
+        return [self]
 
     def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""

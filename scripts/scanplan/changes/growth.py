@@ -9,7 +9,6 @@ from scanplan.changes.contributions import Contribution, rate_contributions
 from scanplan.changes.joined_scans import (
     Drive,
     JoinedScans,
-    check_alike,
     find_lift_m,
     place_drive,
 )
@@ -64,11 +63,11 @@ def grow_plan(
     Raises
     ------
     StageError
-        If two do not fit each other, or cannot be laid on one another.
+        If two do not fit each other.
     """
-    check_alike(surveys)
     (first, scans), *later = surveys
-    drives = [place_drive(scans, first, PlaneMotion(), first)]
+    level = next((plan for plan, own in surveys if not own[0].planar), None)
+    drives = [place_drive(scans, first, PlaneMotion(), level)]
     known: tuple[FloorPlan, Scans] = (first, scans)
     evidence: Columns = {}
     steps: list[Comparison] = []
@@ -76,7 +75,7 @@ def grow_plan(
         step = comparison.compare_surveys((known[0], plan), (known[1], own))
         stale = find_stale_places(step)
         drives = [replace(drive, stale=(*drive.stale, stale)) for drive in drives]
-        drives.append(place_drive(own, plan, step.tie.fit.motion, first))
+        drives.append(place_drive(own, plan, step.tie.fit.motion, level))
         joined = JoinedScans(drives, settings)
         drawn, evidence = assemble(joined)
         known = drawn, (joined, joined.known)
@@ -84,7 +83,7 @@ def grow_plan(
     contributions = rate_contributions(
         known[0],
         [
-            _see(drive, plan, first, step)
+            _see(drive, plan, level or first, step)
             for drive, (plan, _), step in zip(drives, surveys, [steps[0], *steps], strict=True)
         ],
         [int(drive.known.t_ns.max()) for drive in drives],
@@ -95,14 +94,18 @@ def grow_plan(
         evidence,
         [plan.name for plan, _ in surveys],
         [len(drive.known.scan_ids) for drive in drives],
-        sum(not own[0].planar and find_lift_m(plan, first) is None for plan, own in later),
+        sum(
+            not own[0].planar and find_lift_m(plan, level) is None
+            for plan, own in surveys
+            if level not in (None, plan)
+        ),
         steps,
         contributions,
     )
 
 
-def _see(drive: Drive, plan: FloorPlan, first: FloorPlan, step: Comparison) -> Survey:
+def _see(drive: Drive, plan: FloorPlan, level: FloorPlan, step: Comparison) -> Survey:
     """Return a survey in the frame of the first, without rays that were overtaken."""
-    rays = read_rays(drive, drive.known, first, PlaneMotion())
+    rays = read_rays(drive, drive.known, level, PlaneMotion())
     slack_m = comparison.find_slack_m(step.tie)
     return Survey(plan, RaySight(rays, slack_m), drive.motion)

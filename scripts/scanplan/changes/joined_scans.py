@@ -11,11 +11,14 @@ import numpy as np
 from scanplan.changes.comparison import Scans
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.stale_rays import StalePlaces
-from scanplan.errors import StageError
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, FloatArray, IntArray, Settings
+
+_MOUNTED_M = (0.1, 2.0)  # above the floor: from a robot's bumper to what a person carries overhead
+_USUAL_M = 0.3
+"""ASSUME of a planar scanner whose recording does not say: below sills, above skirting boards."""
 
 
 class _Kept(NamedTuple):
@@ -115,27 +118,38 @@ class Drive:
         return found
 
 
-def place_drive(scans: Scans, plan: FloorPlan, motion: PlaneMotion, first: FloorPlan) -> Drive:
-    """Return the scans of a survey on the floor of the first, or under its ceiling.
+def place_drive(
+    scans: Scans, plan: FloorPlan, motion: PlaneMotion, level: FloorPlan | None
+) -> Drive:
+    """Return the scans of a survey on the floor of one in space, or under its ceiling.
 
-    Where neither was seen by both, heights are taken as those of one map.
+    Where neither was seen by both, heights are taken as those of one map. Planar scans lie as high
+    above the floor as their own map says, if a scanner may be mounted there.
 
     Parameters
     ----------
-    plan, first : FloorPlan
-        Of the survey, and of the first.
+    plan : FloorPlan
+        Of the survey.
     motion : PlaneMotion
         From the frame of the survey to that of the first.
+    level : FloorPlan, optional
+        Of the first survey in space; without one heights mean nothing.
     """
-    if scans[0].planar:
+    if level is None:
         return Drive(plan.name, scans, motion, 0.0, 0.0)
-    return Drive(plan.name, scans, motion, find_lift_m(plan, first) or 0.0, first.storey_m[0])
+    floor_m = level.storey_m[0]
+    if not scans[0].planar:
+        return Drive(plan.name, scans, motion, find_lift_m(plan, level) or 0.0, floor_m)
+    own_m = float(np.median(scans[1].map_from_sensor[:, 2, 3]))
+    lowest_m, highest_m = _MOUNTED_M
+    height_m = own_m if lowest_m <= own_m <= highest_m else _USUAL_M
+    return Drive(plan.name, scans, motion, floor_m + height_m - own_m, floor_m)
 
 
-def find_lift_m(plan: FloorPlan, first: FloorPlan) -> float | None:
-    """Return how far a survey lies below the first; None where nothing level was seen by both."""
-    for level in ("floor_z_m", "ceiling_z_m"):
-        lift_m = getattr(first, level) - getattr(plan, level)
+def find_lift_m(plan: FloorPlan, level: FloorPlan) -> float | None:
+    """Return how far a survey lies below another; None where nothing level was seen by both."""
+    for height in ("floor_z_m", "ceiling_z_m"):
+        lift_m = getattr(level, height) - getattr(plan, height)
         if np.isfinite(lift_m):
             return float(lift_m)
     return None
@@ -144,26 +158,32 @@ def find_lift_m(plan: FloorPlan, first: FloorPlan) -> float | None:
 class JoinedScans:
     """Scans of several surveys in the frame of the first, read as those of a `ScanStore` are.
 
+    Planar scans among others are scans of one elevation: of what they do not show at other heights
+    nothing is known to be lost.
+
     Attributes
     ----------
     settings : dict
         What a plan of them is made with.
     planar : bool
+        Whether all of them are.
     known : RegisteredScans
-        Numbered from 0, survey after survey.
+        Numbered survey after survey, planar ones last.
     sensors_m : dict of int to (3,) float64
     n_points : (n,) int64
     left_out : dict of int to (72,) bool
-        Sectors of azimuth in which rays of a scan were overtaken.
+        Sectors of azimuth in which rays of a scan were overtaken, or are of one elevation.
     """
 
-    def __init__(self, drives: Sequence[Drive], settings: Settings) -> None:
+    def __init__(self, drives: Sequence[Drive], settings: Settings, first_id: int = 0) -> None:
+        drives = sorted(drives, key=lambda drive: drive.planar)
         self.settings = settings
         self.planar = drives[0].planar
         self._drives = drives
-        self._first_ids = np.cumsum([0, *(len(drive.known.scan_ids) for drive in drives)])
+        counts = [len(drive.known.scan_ids) for drive in drives]
+        self._first_ids = first_id + np.cumsum([0, *counts])
         self.known = RegisteredScans(
-            np.arange(self._first_ids[-1], dtype=np.int32),
+            np.arange(first_id, self._first_ids[-1], dtype=np.int32),
             *(
                 np.concatenate([getattr(drive.known, name) for drive in drives])
                 for name in ("t_ns", "map_from_sensor", "covariance")
@@ -172,13 +192,27 @@ class JoinedScans:
         self.n_points = np.concatenate([drive.n_points for drive in drives])
         places_m = self.known.map_from_sensor[:, :3, 3]
         self.sensors_m = dict(zip(self.scan_ids.tolist(), places_m, strict=True))
-        left_out = (sectors for drive in drives for sectors in drive.left_out)
+        left_out = [
+            sectors | (drive.planar and not self.planar)
+            for drive in drives
+            for sectors in drive.left_out
+        ]
         self.left_out = dict(zip(self.scan_ids.tolist(), left_out, strict=True))
 
     @property
     def scan_ids(self) -> IntArray:
         """(n,) int32, increasing."""
         return self.known.scan_ids
+
+    @property
+    def parts(self) -> list["JoinedScans"]:
+        """Those in space and those in the plane, numbered as here."""
+        flat = [drive for drive in self._drives if drive.planar]
+        solid = self._drives[: -len(flat)] if flat else self._drives
+        if not flat or not solid:
+            return [self]
+        first_id = int(self._first_ids[len(solid)])
+        return [JoinedScans(solid, self.settings), JoinedScans(flat, self.settings, first_id)]
 
     def scans(self, scan_ids: Iterable[int] | None = None) -> Iterator[tuple[int, FloatArray]]:
         """Iterate over (scan_id, xyz_m (n, 3) float32) of all scans, or of those asked for."""
@@ -196,20 +230,3 @@ class JoinedScans:
 
     def _find_drive(self, scan_id: int) -> int:
         return int(np.searchsorted(self._first_ids, scan_id, side="right")) - 1
-
-
-def check_alike(surveys: Sequence[tuple[FloorPlan, Scans]]) -> None:
-    """Refuse surveys of which no one plan can be made: planar ones together with others.
-
-    Raises
-    ------
-    StageError
-    """
-    first, *others = surveys
-    for other in others:
-        if other[1][0].planar != first[1][0].planar:
-            flat, solid = (first, other) if first[1][0].planar else (other, first)
-            raise StageError(
-                f"{flat[0].name} and {solid[0].name}: the scanner of the first is planar, that of"
-                " the second is not, so no plan is made of both; compare them by the target changes"
-            )
