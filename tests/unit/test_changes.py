@@ -219,7 +219,10 @@ def test_a_door_walled_up_behind_furniture_is_told_by_what_is_seen_beside_it():
     changes = compare(survey(), survey(doors=[], pieces=[all_of_it]))
     assert told(changes, "opening") == []
     (closed,) = [c for c in changes if c.table == "opening"]
-    assert (closed.verdict, closed.is_told) == (SHUT, True) and "walled up, 0." in closed.doubt
+    assert (closed.verdict, closed.is_told) == (
+        SHUT,
+        True,
+    ) and "walled up, 0." in closed.doubt
 
 
 def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():
@@ -322,6 +325,41 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
     all_over = looks([[0, 0, 0, 0]], [[9, 9, 9, 9]])
     for seen, is_gone in ((above_a_bed, False), (never_low, False), (all_over, True)):
         assert ray_cells.compare_looks(planar, seen).is_passed.tolist() == [is_gone]
+
+
+def test_what_a_planar_scanner_saw_is_gone_if_free_in_the_row_of_its_plane():
+    planar = replace(looks([[7]], [[0]]), row=1)
+    for hits, passes, is_gone in (
+        ([[0, 0, 0, 0]], [[0, 9, 0, 0]], True),
+        ([[0, 0, 0, 6]], [[0, 9, 9, 0]], True),
+        # a plane that is tilted comes to the rows beside its own
+        ([[6, 0, 0, 0]], [[0, 9, 9, 9]], False),
+        ([[0, 0, 6, 0]], [[9, 9, 0, 9]], False),
+        # over it alone
+        ([[0, 0, 0, 0]], [[0, 0, 9, 9]], False),
+    ):
+        assert ray_cells.compare_looks(planar, looks(hits, passes)).is_passed.all() == is_gone
+
+
+def test_what_has_heights_is_gone_if_planar_rays_go_through_what_was_solid_in_their_row():
+    through = replace(looks([[0]], [[9]]), row=1)
+    for hits, passes, is_gone in (
+        ([[0, 5, 0, 0]], [[9, 0, 9, 9]], True),
+        ([[5, 0, 5, 5]], [[0, 9, 0, 0]], False),
+    ):
+        found = ray_cells.compare_looks(looks(hits, passes), through)
+        assert found.is_passed.tolist() == [is_gone]
+
+
+@pytest.mark.parametrize(("height_m", "row"), [(0.3, 1), (1.1, 4), (0.0, -1), (5.0, -1)])
+def test_a_planar_survey_is_in_the_row_of_its_map_if_a_scanner_may_be_mounted_there(height_m, row):
+    sight = survey().sight
+    assert isinstance(sight, RaySight)
+    rays = sight.rays
+    up_m = np.array([0, 0, height_m])
+    lifted = replace(rays, sensors_m=rays.sensors_m + up_m, xyz_m=rays.xyz_m + up_m)
+    line, length_m = ray_cells.line_between(np.array(INNER, float).reshape(2, 2))
+    assert RaySight(lifted).look_at(line, (0, length_m), 0.1).row == row
 
 
 def test_rays_of_unknown_heights_deny_nothing_that_a_planar_scanner_saw():

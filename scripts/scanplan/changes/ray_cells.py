@@ -26,6 +26,8 @@ N_ROWS = 12
 """Up to 3 m."""
 HIGHEST_M = 2.0
 """Above the floor: lintels, and what planar scanners are mounted below."""
+MOUNTED_M = (0.1, 2.0)
+"""Where planar scanners are mounted, above the floor: from a robot's bumper to overhead."""
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
@@ -46,6 +48,8 @@ class Looks:
         Likewise of those that end there.
     is_mixed : bool
         Whether rays are of many heights, of which none is known.
+    row : int
+        That all of them lie in, where they are of one height that is known; else -1.
     """
 
     hits: IntArray
@@ -53,6 +57,7 @@ class Looks:
     passing: IntArray
     ending: IntArray
     is_mixed: bool = False
+    row: int = -1
 
     @property
     def is_flat(self) -> bool:
@@ -102,7 +107,15 @@ def look_at(
     passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
     shape = (n_cells, _count_rows(rays))
     is_mixed = rays.planar and _spread_m(rays) > ROW_M
-    return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed)
+    known = -1 if is_mixed else _find_row(rays)
+    return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed, known)
+
+
+def _find_row(rays: RaySet) -> int:
+    """Return the row of a planar survey's plane, as high as its own map says; -1 of none."""
+    height_m = float(rays.sensors_m[0, 2]) if rays.planar and len(rays.sensors_m) else 0.0
+    lowest_m, highest_m = MOUNTED_M
+    return int(height_m / ROW_M) if lowest_m <= height_m <= highest_m else -1
 
 
 def _spread_m(rays: RaySet) -> float:
@@ -225,14 +238,21 @@ class Later:
 def compare_looks(first: Looks, other: Looks) -> Later:
     """Return what another survey shows of what a first one found solid.
 
-    Where heights mean nothing to one of them, what it saw may be at any: to the other a cell is
-    solid that is so at all heights that it looked at, and free that is so at all, low ones too, as
-    a planar scanner looks at chairs and beds.
+    What a planar survey saw is in the row of its plane, and is free if no row beside it, which a
+    tilted plane comes to, is solid. Where heights mean nothing to one of them, what it saw may be
+    at any: to the other a cell is solid that is so at all heights that it looked at, and free that
+    is so at all, low ones too, as a planar scanner looks at chairs and beds.
     """
     solid = first.solid
     passes, hits = other.passes, other.hits
     is_denied = np.zeros(len(solid), bool)
-    if first.is_flat and not other.is_flat:
+    if first.row >= 0 and not other.is_flat:
+        beside = slice(max(first.row - 1, 0), first.row + 2)
+        is_denied = ((hits >= FEW) & (hits > passes))[:, beside].any(axis=1)
+        solid = solid & (np.arange(hits.shape[1]) == first.row)
+    elif other.row >= 0 and not first.is_flat:
+        solid = solid[:, other.row, None]
+    elif first.is_flat and not other.is_flat:
         is_denied = ((hits >= FEW) & (hits > passes)).any(axis=1) | (passes[:, _LOW_ROW] < FEW)
         solid = np.repeat(solid, other.hits.shape[1], axis=1)
     elif first.is_flat and other.is_mixed and not first.is_mixed:
