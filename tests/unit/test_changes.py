@@ -222,7 +222,7 @@ def test_a_door_walled_up_behind_furniture_is_told_by_what_is_seen_beside_it():
     assert (closed.verdict, closed.is_told) == (
         SHUT,
         True,
-    ) and "walled up, 0." in closed.doubt
+    ) and "shut 0.75, walled up 0.25" in closed.doubt
 
 
 def test_a_door_is_walled_up_if_flush_and_shut_if_set_back():

@@ -36,8 +36,9 @@ _LEAST_SIGMA_M = 0.003  # what jambs are off by at the least: plaster and frames
 _PER_MEDIAN = 1.4826  # a standard deviation, of the median of what is normal, without its sign
 _EDGES = 8  # of four openings: fewer do not say what edges differ by
 _WRONG = 0.06  # of edges that have not moved: 17 of 268 in five pairs lie beyond three sigma
-_ONE_SIDE = 0.75  # how sure a wall is that is flush on the side that was seen: some leaves are
 _SWINGS = 0.3  # of doors, like furniture: between two surveys some are opened or shut
+_HUNG = 0.5  # of leaves hang on the side that was seen, where they are as flush as a wall
+_BLIND = 0.05  # of what closes windows: panes and blinds are set back, curtains hang before
 
 _KINDS = ("door", "passage", "window", "glass")
 """Types that say what an opening is: a gap says that this is not known."""
@@ -219,14 +220,27 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     flush = opening_sight.find_flush_sides(opening, of, by)
     is_flush = len(flush) > 0 and bool(flush.all())
     p = verdicts.rate_places(views.n_ending, views.n_passing) * is_flush
-    p *= 1.0 if len(flush) > 1 else _ONE_SIDE
+    # a leaf is thinner than its wall
+    p *= 1.0 if len(flush) > 1 else _rate_walled_up(opening.kind)
     if p >= LIKELY:
         return tell(GONE, p)
     # whatever closes it, it is closed: which of the two is told apart by its other side alone
-    doubt = f"walled up, {p:.2f}: flush with the one side that was seen" if is_flush else ""
+    rest = _rate_shut(views) - p
+    said = f"shut {rest:.2f}, walled up {p:.2f}: flush with the one side that was seen"
+    doubt = said if is_flush else ""
     # what its own plan holds for no opening may be beside furniture that was carried
     is_held = opening.p_true >= 1 / 2
     return tell(SHUT, _rate_shut(views) * (1.0 if is_held else opening.p_true), doubt)
+
+
+def _rate_walled_up(kind: str) -> float:
+    """Return how likely it is walled up, by the one side that was seen, what is closed and flush.
+
+    >>> round(_rate_walled_up("door"), 2)
+    0.25
+    """
+    shut = _SWINGS * (_HUNG if kind in WAYS else _BLIND)
+    return verdicts.CHANGED / (verdicts.CHANGED + shut)
 
 
 def _rate_shut(views: Views) -> float:
