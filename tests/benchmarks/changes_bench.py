@@ -10,19 +10,24 @@ import math
 import random
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import shapely
 import shapely.affinity
 import yaml
 
-from scanplan.changes import comparison
+from helpers.default_settings import SETTINGS
+from scanplan.arrays import array_plan
+from scanplan.changes import comparison, growth
+from scanplan.changes.joined_scans import JoinedScans
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, OPENED, SHUT, Change
 from scanplan.plan import floorplan_files
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.store import registered_scans, tables
 
 Drawing = dict[str, Any]
@@ -44,11 +49,21 @@ SURVEYS = (
     *("mix1_vlp", "mix1_las", "mix2_vlp", "mix2_ous", "part_vlp"),
 )
 """By what was done to the floor (a: nothing yet) and the sensor; `part` is a shorter way."""
+GROWN = (("part_vlp", "mix1_las"), ("mix1_las", "part_vlp"), ("a_las", "same_vlp"))
+"""Surveys of which one plan is made, of a scanner in space and a planar one, nothing changed."""
 TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 """Of a plan: what is compared."""
 _NEAR_M = 0.4  # of a change from where it was made: a wall moved by 30 cm, and what plans err by
 _SWUNG = {SHUT: GONE, OPENED: NEW}
 """What else a door may be that is shut, or opened."""
+OUTCOMES = _TOLD, _SHUT, _DOUBTED, _MISSED = (
+    "told",
+    "told as shut or walled up",
+    "doubtful",
+    "missed",
+)
+"""What may become of an edit."""
+_ON_M = 0.1  # of a wall that is drawn from the faces of a true one
 _FOUND = 0.5  # of the length of an edit that rows of its verdict cover
 _PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
 _PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
@@ -84,6 +99,9 @@ def bench(project: Path, folder: Path, names: Sequence[str]) -> None:
     for name in wanted:
         _make_plan(project, folder, name)
     evaluate(folder, wanted)
+    for pair in GROWN:
+        if set(pair) <= set(wanted):
+            _evaluate_grown(project, folder, pair)
 
 
 def evaluate(folder: Path, names: Sequence[str]) -> None:
@@ -91,13 +109,18 @@ def evaluate(folder: Path, names: Sequence[str]) -> None:
     earlier = [name for name in names if name.startswith("a_")]
     later = [name for name in names if not name.startswith("a_")]
     totals = [0] * 7
+    by_kind: Counter[tuple[str, str]] = Counter()
     for before in earlier:
         for after in later:
             found = _compare(folder, before, after)
-            counts = _judge(found.changes, EDITS[after.partition("_")[0]])
+            counts, became = _judge(found.changes, EDITS[after.partition("_")[0]])
             totals = [total + count for total, count in zip(totals, counts, strict=True)]
+            by_kind.update((f"{e.table} {e.verdict}", outcome) for e, outcome in became.items())
             print(f"changes, {before} to {after}: {_say(counts)}", flush=True)
     print(f"changes, all: {_say(totals)}")
+    for kind in sorted({kind for kind, _ in by_kind}):
+        said = [f"{by_kind[kind, of]} {of}" for of in OUTCOMES if by_kind[kind, of]]
+        print(f"changes, {kind}: {', '.join(said)}")
 
 
 def _say(counts: Sequence[int]) -> str:
@@ -109,8 +132,8 @@ def _say(counts: Sequence[int]) -> str:
     )
 
 
-def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> list[int]:
-    """Return the counts that `_say` says.
+def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> tuple[list[int], dict[Edit, str]]:
+    """Return the counts that `_say` says, and what of `OUTCOMES` became of each edit.
 
     A change of walls and openings is right if an edit of its verdict was made there; a wall that
     moved may also be gone and new.
@@ -120,21 +143,24 @@ def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> list[int]:
     wrong = [c for c in likely if c not in right]
     for change in wrong:
         print(f"  wrong: {change.table} {change.verdict} {change.shape.wkt[:70]} {change.p:.2f}")
-    made = [edit for edit in edits if edit.counts]
-    seen = [edit for edit in made if not _is_unseen(edit, changes)]
-    found = [edit for edit in seen if _is_found(edit, likely)]
-    lost = [edit for edit in seen if edit not in found]
     states = [replace(c, verdict=_SWUNG[c.verdict]) for c in changes if c.verdict in _SWUNG]
-    shut = [edit for edit in lost if _is_found(edit, [c for c in states if c.p >= LIKELY])]
-    doubted = [edit for edit in lost if edit not in shut and _is_found(edit, changes)]
-    for edit in lost:
-        print(f"  missed: {edit.table} {edit.verdict} {edit.ends_m}{' (shut)' * (edit in shut)}")
+    shut = [c for c in states if c.p >= LIKELY]
+    ways = list(zip(OUTCOMES[:-1], (likely, shut, changes), strict=True))
+    made = [edit for edit in edits if edit.counts]
+    became = {
+        edit: next((outcome for outcome, found in ways if _is_found(edit, found)), _MISSED)
+        for edit in made
+        if not _is_unseen(edit, changes)
+    }
+    for edit, outcome in became.items():
+        if outcome != _TOLD:
+            print(f"  {outcome}: {edit.table} {edit.verdict} {edit.ends_m}")
     for state in states:
         if not any(_fits(state, edit) for edit in edits):
             print(f"  swung: {state.verdict} {state.shape.wkt[:70]} {state.p:.2f}")
     gone = sum(c.verdict == GONE for c in wrong)
-    counts = [len(of) for of in (right, likely, found, shut, doubted, seen)]
-    return [*counts, gone]
+    outcomes = [sum(of == outcome for of in became.values()) for outcome in OUTCOMES[:-1]]
+    return [len(right), len(likely), *outcomes, len(became), gone], became
 
 
 def _fits(change: Change, edit: Edit) -> bool:
@@ -150,6 +176,61 @@ def _is_found(edit: Edit, likely: Sequence[Change]) -> bool:
     rows = [c.shape for c in likely if _fits(c, edit)]
     near = edit.line.buffer(_NEAR_M + 0.1)
     return sum(row.intersection(near).length for row in rows) >= _FOUND * edit.line.length
+
+
+def _evaluate_grown(project: Path, folder: Path, names: Sequence[str]) -> None:
+    """Print how much of a floor the plans of two surveys have, and the one plan of both."""
+    known = [read_survey(folder / "results" / name) for name in names]
+
+    def assemble(joined: JoinedScans) -> tuple[FloorPlan, Mapping[str, Any]]:
+        made = array_plan.assemble_plan(joined, names[-1], 1)
+        return array_plan.rate_plan(made, joined), made.evidence
+
+    grown = growth.grow_plan(known, SETTINGS, assemble)
+    changed = sum(c.is_change for step in grown.steps for c in step.changes)
+    print(f"grown, {' and '.join(names)}: {changed} told as changed")
+    truth = draw(project, names[0].partition("_")[0])
+    first_from_last = grown.steps[0].tie.fit.motion
+    for name, plan, move in (
+        (names[0], known[0][0], None),
+        (names[1], known[1][0], first_from_last.move),
+        ("both", grown.plan, None),
+    ):
+        print(f"grown, {name}: {_measure_drawn(plan, move, truth)}", flush=True)
+
+
+def _measure_drawn(plan: FloorPlan, move: Any, truth: Drawing) -> str:
+    def place(shape: Any) -> Any:
+        return shapely.transform(shape, move) if move else shape
+
+    walls = [f for f in truth["features"] if _kind(f) == "wall" and "height_m" not in _own(f)]
+    lines = [shapely.LineString(f["geometry"]["coordinates"]) for f in walls]
+    reach_m = [_own(f)["thickness_m"] / 2 + _ON_M for f in walls]
+    drawn = place(shapely.union_all(shapely.linestrings(plan.wall_shapes.lines_m)))
+    found_m = sum(
+        line.intersection(drawn.buffer(far_m)).length
+        for line, far_m in zip(lines, reach_m, strict=True)
+    )
+    grounds = [line.buffer(far_m) for line, far_m in zip(lines, reach_m, strict=True)]
+    right_m = drawn.intersection(shapely.union_all(grounds)).length
+    said = [f"{found_m:.0f} of {sum(line.length for line in lines):.0f} m of wall"]
+    said.append(f"{drawn.length - right_m:.0f} m that are none")
+    middles = place(shapely.points(centrelines_m(plan.openings).mean(axis=1)))
+    for kind in ("door", "window"):
+        placed = shapely.MultiPoint(middles[plan.openings["type"] == kind])
+        there = [_middle(f) for f in truth["features"] if _own(f).get("type") == kind]
+        n_right = sum(middle.distance(placed) <= _NEAR_M for middle in there if not placed.is_empty)
+        said.append(f"{n_right} of {len(there)} {kind}s ({len(placed.geoms)} drawn)")
+    return ", ".join(said)
+
+
+def _own(feature: Drawing) -> dict[str, Any]:
+    return feature["properties"]
+
+
+def _middle(opening: Drawing) -> shapely.Point:
+    coordinates = np.array(opening["geometry"]["coordinates"], float)
+    return shapely.Point(coordinates.reshape(-1, 2).mean(axis=0))
 
 
 def _is_unseen(edit: Edit, changes: Sequence[Change]) -> bool:

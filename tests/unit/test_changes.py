@@ -271,6 +271,12 @@ def test_a_door_moved_along_its_wall_is_told_by_rays_at_its_edge():
     there = (5, 3.3, 5, 4.2)
     (door,) = told(compare(survey(), survey(doors=[there])), "opening")
     assert door.verdict == MOVED and door.moved_m == pytest.approx((0.0, 0.3), abs=0.02)
+    # where one of the plans holds it for none, its edge is that of something else
+    for p_true, verdict in ((0.6, MOVED), (0.2, SAME)):
+        doubted = survey(doors=[there])
+        doubted.plan.openings["p_true"] = np.array([p_true])
+        (door,) = [c for c in compare(survey(), doubted) if c.table == "opening"]
+        assert door.verdict == verdict
 
 
 def test_edges_are_known_as_well_as_most_of_them_agree():

@@ -181,7 +181,7 @@ def _judge_pair(one: Opening, other: Opening, a: Survey, b: Survey, sigma_m: flo
     first, second = (a, b) if is_wider else (b, a)
     looks = [s.sight.look_at(one.line, span_m, one.half_m) for s in (first, second)]
     later = ray_cells.compare_looks(*looks)
-    p = verdicts.rate_places(*later.count_places(later.is_passed))
+    p = verdicts.rate_places(*later.count_places(later.is_passed)) * min(one.held, other.held)
     if np.mean(later.is_passed) < _PASSED or p < 1 / 2:
         return same
     # what closes it may be a leaf, or a pane that some rays end at
@@ -228,9 +228,7 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     rest = _rate_shut(views) - p
     said = f"shut {rest:.2f}, walled up {p:.2f}: flush with the one side that was seen"
     doubt = said if is_flush else ""
-    # what its own plan holds for no opening may be beside furniture that was carried
-    is_held = opening.p_true >= 1 / 2
-    return tell(SHUT, _rate_shut(views) * (1.0 if is_held else opening.p_true), doubt)
+    return tell(SHUT, _rate_shut(views) * opening.held, doubt)
 
 
 def _rate_walled_up(kind: str) -> float:

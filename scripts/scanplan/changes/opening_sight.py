@@ -47,6 +47,14 @@ class Opening:
         """(2, 2) float64."""
         return self.line.at(np.array([0.0, self.width_m]))
 
+    @property
+    def held(self) -> float:
+        """How likely what becomes of it is of an opening.
+
+        What its own plan holds for none may be beside furniture that was carried.
+        """
+        return 1.0 if self.p_true >= 1 / 2 else self.p_true
+
 
 @dataclass(frozen=True)
 class Views:
