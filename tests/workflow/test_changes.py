@@ -12,6 +12,7 @@ import pytest
 from helpers.project_copy import Project
 from scanplan.project import dataset
 from scanplan.store import schemas, tables
+from scanplan.validation.confidence_coefficients import COEFFICIENTS
 
 pytestmark = pytest.mark.workflow
 DRAWING = "config/buildings/tiny_office.geojson"
@@ -62,6 +63,8 @@ def test_the_moved_wall_is_told_and_nothing_else(compared):
     assert columns["x_moved_m"][is_wall] == pytest.approx(NEW_M - OLD_M, abs=0.02)
     assert columns["y_moved_m"][is_wall] == pytest.approx(0.0, abs=0.02)
     assert columns["length_m"][is_wall].sum() > 2
+    # no surer than either plan rates it, see `confidence_coefficients`
+    assert (columns["p"][is_wall] <= COEFFICIENTS["space"]["most"]).all()
     assert not (columns["verdict"] == "gone").any()
 
 

@@ -108,7 +108,9 @@ COMPARED = (
 def survey_files_of(dataset):
     """The tables of a dataset that it is compared with others by."""
     files = {part: plan_table_of(dataset, part) for part in COMPARED[:7]}
-    files["confidence"] = kept([f"results/{dataset}/plan/confidence.parquet"])
+    confidence = f"results/{dataset}/plan/confidence.parquet"
+    # a path, as a list of one is none to who reads it
+    files["confidence"] = [] if is_lacking(confidence) else confidence
     for part in ("scans", "registration"):
         files[part] = f"results/{dataset}/{part}.parquet"
     return files
