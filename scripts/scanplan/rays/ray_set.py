@@ -238,24 +238,18 @@ def gather_rays(
         at_m[:, 2] = np.median(xyz_m[:, 2])
     of_scan = left_out or {}
     whole = np.zeros(azimuth_sectors.N_SECTORS, bool)
-    are_left_out = np.array([of_scan.get(i, whole) for i in scan_ids], bool).reshape(-1, len(whole))
-    floor_z_m = np.nan
-    if not planar:
-        # one elevation of others is no level that they saw
-        is_whole = np.repeat(~are_left_out.all(axis=1), np.diff(first))
-        z_m = xyz_m[:, 2] if is_whole.all() else xyz_m[is_whole, 2]
-        steep_m = _steep_heights_m(xyz_m, scan_ids, first, sensors_m)
-        floor_z_m = levels.place_floor_z(z_m, steep_m)
     return RaySet(
         scan_ids=np.array(scan_ids, np.int64),
         sensors_m=at_m,
         first=first,
         azimuth_rad=azimuth_rad,
         xyz_m=xyz_m,
-        floor_z_m=floor_z_m,
+        floor_z_m=np.nan
+        if planar
+        else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
         planar=bool(planar),
         is_level=np.ones(len(scan_ids), bool),
-        left_out=are_left_out,
+        left_out=np.array([of_scan.get(i, whole) for i in scan_ids], bool).reshape(-1, len(whole)),
     )
 
 
