@@ -48,7 +48,7 @@ def assemble_plan(
     outputs : dict of str to path-like
         Files to write: plan/<name>.parquet for the names in `planning.TABLES`.
     settings : dict
-        Keywords of `planning.make_plan_settings`.
+        What `planning.make_plan_settings` takes.
     design : path-like, optional
         What the floor is likelier to be as, an .ifc or .dxf file: a first plan ties its frame.
     storey : str or int, optional
@@ -79,29 +79,21 @@ def assemble_plan(
     wait_for_rays = workers.begin_in_thread(
         _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
     )
-    find_seen = find_dense = None
+    others = planning.OtherScans()
     if store.planar:
-        find_dense = functools.partial(
-            fronts.gather_dense_rays, store.scans, sensors_m, threads=threads
-        )
         retained = store.scans(registered.scan_ids)
-        find_seen = workers.begin_in_thread(
-            free_space.find_seen_floor, retained, sensors_m, threads=threads
+        others = planning.OtherScans(
+            workers.begin_in_thread(
+                free_space.find_seen_floor, retained, sensors_m, threads=threads
+            ),
+            functools.partial(fronts.gather_dense_rays, store.scans, sensors_m, threads=threads),
         )
+    limits = planning.make_plan_settings(settings)
+    chosen = planning.ChosenScans.of_registered(segments, rays, registered, rows)
     # sums that a library shares out among cores differ in their last digits
     with threadpool_limits(1):
         make_plan = functools.partial(
-            planning.make_plan,
-            segments,
-            rays,
-            poses[:, :2, 3],
-            registered.t_ns[rows],
-            planning.make_plan_settings(**settings),
-            poses[rows, :3, 2],
-            registered.covariance[rows],
-            find_seen=find_seen,
-            find_dense=find_dense,
-            threads=threads,
+            planning.make_plan, chosen, poses[:, :2, 3], limits, others=others, threads=threads
         )
         plan = make_plan()
         messages.check_plan(walls, plan, is_used.sum(), count, earlier.findings)
@@ -115,7 +107,6 @@ def assemble_plan(
         ceiling_z_m=float(heights_m["ceiling_z_m"]),
     )
     track_m = poses[np.argsort(registered.t_ns), :2, 3]
-    limits = planning.make_plan_settings(**settings)
     measured = [
         sparse,
         contradictions.measure_range_offset(

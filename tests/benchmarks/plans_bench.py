@@ -204,21 +204,19 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
     sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
     rays = ray_set.gather_rays(found.store.scans(scan_ids), sensors_m, planar=found.store.planar)
     used = np.isin(found.walls["scan_id"], scan_ids)
-    find_seen = find_dense = None
+    others = planning.OtherScans()
     if found.store.planar:
         retained = found.store.scans(found.registered.scan_ids)
-        find_seen = functools.partial(free_space.find_seen_floor, retained, sensors_m)
-        find_dense = functools.partial(fronts.gather_dense_rays, found.store.scans, sensors_m)
+        others = planning.OtherScans(
+            functools.partial(free_space.find_seen_floor, retained, sensors_m),
+            functools.partial(fronts.gather_dense_rays, found.store.scans, sensors_m),
+        )
+    segments = {column: values[used] for column, values in found.walls.items()}
     plan = planning.make_plan(
-        {column: values[used] for column, values in found.walls.items()},
-        rays,
+        planning.ChosenScans.of_registered(segments, rays, found.registered, rows),
         poses[:, :2, 3],
-        found.registered.t_ns[rows],
-        planning.make_plan_settings(**stage_settings.select_plan(settings)),
-        poses[rows, :3, 2],
-        found.registered.covariance[rows],
-        find_seen=find_seen,
-        find_dense=find_dense,
+        planning.make_plan_settings(stage_settings.select_plan(settings)),
+        others=others,
     )
     return Plan(plan, rays.floor_z_m)
 

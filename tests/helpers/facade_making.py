@@ -10,7 +10,7 @@ from scanplan.rays import ray_set
 
 SENSORS = [(1, 2.5, 0.9), (2, 3, 0.9), (3, 2.5, 0.9), (2.5, 3.4, 0.9)]
 ROOM = [(0, 0, 4, 0), (4, 0, 4, 4), (4, 4, 0, 4), (0, 4, 0, 0)]
-SETTINGS = planning.make_plan_settings(**house_making.PLAN)
+SETTINGS = planning.make_plan_settings(house_making.PLAN)
 LOST, BEYOND = None, 1.5
 
 

@@ -25,7 +25,11 @@ LIMITS = {
         max_angle_deg=5, min_thickness_m=0.05, max_thickness_m=0.6, offset_m=0.05, max_gap_m=3
     ),
     "opening": OpeningSettings(
-        min_opening_m=0.5, max_opening_m=3.0, max_closed_m=0.5, max_door_m=1.3
+        min_opening_m=0.5,
+        max_opening_m=3.0,
+        max_closed_m=0.5,
+        max_door_m=1.3,
+        door_height_m=1.9,
     ),
     "reading": RaySettings(band_m=0.06, reach_m=0.3, max_gap_m=0.3, door_height_m=1.9),
 }

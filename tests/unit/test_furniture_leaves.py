@@ -11,7 +11,9 @@ from scanplan.plan.openings import OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 
 JAMBS_M = [[2.0, 0.0], [2.9, 0.0]]
-MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0, "ghost_distance_m": 0.3}
+MOST = fronts.FrontLimits(
+    max_door_m=1.5, max_thickness_m=0.6, max_depth_m=1.0, ghost_distance_m=0.3
+)
 
 
 def single(*ends, openings=()):
@@ -118,8 +120,7 @@ def test_what_a_leaf_was_seen_in_one_line_with_stays_a_wall():
             *2 * (box(0, -2, 5, 4),),
             lambda faces: [single(*np.ravel(f.ends)) for f in faces],
         ),
-        *(lambda _: 0.1,),
-        **MOST,
+        MOST,
     )
     assert leaf.face.ends[:, 1].max() == pytest.approx(0.9)
     assert sorted(wall.ends[:, 1].max().round(2) for wall in left) == [0.0, 0.05]
@@ -169,8 +170,6 @@ def test_both_sides_of_a_leaf_are_found_and_taken_off_with_what_was_seen_of_it_a
     def assemble(faces):
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
-    left, grounds, found = fronts.drop_fronts(
-        *(walls, *2 * (box(0, 0, 5, 4),), assemble, lambda _: 0.1), **MOST
-    )
+    left, grounds, found = fronts.drop_fronts(walls, *2 * (box(0, 0, 5, 4),), assemble, MOST)
     assert left == walls[:1] and len(found) == len(grounds) == 2
     assert {id(leaf.face) for leaf in found} == {id(side.left[0]) for side in sides}

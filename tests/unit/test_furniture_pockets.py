@@ -18,7 +18,9 @@ from scanplan.plan.plan_wall import PlanWall, greatest_thickness_m, usual_thickn
 
 ROOM = [(0, 0, 5, 0), (5, 0, 5, 4), (0, 4, 0, 0)]
 """South, east and west face of a room of 5 m by 4 m, seen from within."""
-MOST = {"max_door_m": 1.5, "max_thickness_m": 0.6, "max_depth_m": 1.0, "ghost_distance_m": 0.3}
+MOST = fronts.FrontLimits(
+    max_door_m=1.5, max_thickness_m=0.6, max_depth_m=1.0, ghost_distance_m=0.3
+)
 
 
 def wall(faces, openings=()):
@@ -213,10 +215,7 @@ def test_walls_are_left_without_fronts_unless_other_scans_saw_most_behind_them(s
     def assemble(faces):
         return [wall for wall in walls if any(face in faces for face in wall.members)]
 
-    left, grounds, leaves = fronts.drop_fronts(
-        *(walls, floor, seen, assemble, lambda _: 0.1),
-        **MOST,
-    )
+    left, grounds, leaves = fronts.drop_fronts(walls, floor, seen, assemble, MOST)
     assert left == (walls[:4] if is_front else walls)
     assert len(grounds) == is_front and leaves == []
 

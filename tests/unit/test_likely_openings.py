@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from helpers.label_making import paired, scans_at, with_hole
 from scanplan.plan.model import priors
 from scanplan.plan.model.likely_openings import settle_openings
-from scanplan.plan.model.wall_labels import label_wall
+from scanplan.plan.model.wall_labels import LabelEvidence, label_wall
 from scanplan.plan.rooms.room import Room
 
 LENGTH_M = 5.0
@@ -32,7 +32,7 @@ def opened(low_m, high_m, heights_m=(0, 2.1), faces=None):
     wall, looked = paired(
         scans_at(LENGTH_M, with_hole((low_m, high_m), heights_m)), seen, length_m=LENGTH_M
     )
-    ((part, _),) = label_wall(wall, looked, np.empty((0, 2)), max_opening_m=2.0)
+    ((part, _),) = label_wall(wall, LabelEvidence(looked, np.empty((0, 2)), 2.0))
     assert len(part.openings) == 1
     return part
 

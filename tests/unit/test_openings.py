@@ -9,7 +9,11 @@ from scanplan.plan import openings
 
 DOOR_HEIGHT_M = 1.8
 SETTINGS = openings.OpeningSettings(
-    min_opening_m=0.5, max_opening_m=2.0, max_closed_m=1.5, max_door_m=1.5
+    min_opening_m=0.5,
+    max_opening_m=2.0,
+    max_closed_m=1.5,
+    max_door_m=1.5,
+    door_height_m=DOOR_HEIGHT_M,
 )
 AXIS = Line(np.zeros(2), np.array([0.0, 1.0]))
 
@@ -24,9 +28,7 @@ def grid(low, high, *heights):
 
 
 def classify(low, high, sides, **more):
-    return openings.classify_gap(
-        AXIS, low, high, sides, SETTINGS, door_height_m=DOOR_HEIGHT_M, **more
-    )
+    return openings.classify_gap(AXIS, low, high, sides, SETTINGS, **more)
 
 
 def judge(hits, passes, low=1.0, high=1.9, n_scans=1, behind_m=0.0, *, planar=False, **more):

@@ -13,7 +13,9 @@ from helpers import floorplan_making, overlay_making
 from scanplan.exports.sheet import composition
 from scanplan.geometry import overlay_steps, overlays
 from scanplan.geometry.fallbacks import take_fallbacks
+from scanplan.plan.rooms.room import RoomSettings
 from scanplan.plan.rooms.room_outlines import find_rooms
+from scanplan.plan.wall_ground import Bounds
 from scanplan.project import dataset_files
 from scanplan.rays import free_space, ray_set
 from scanplan.recordings import frame_edges
@@ -188,11 +190,10 @@ def test_rooms_with_curved_walls_are_found(recordings_dir):
         closed = free_space.close_shadows(floor, half_m)
         assert floor.area <= closed.area <= floor.area + 2 * half_m * floor.length
     rooms = find_rooms(
-        *([], views, np.array([sensors_m[scan_id][:2] for scan_id in sensors_m])),
-        min_area_m2=1.0,
-        min_walled=0.0,
-        min_width_m=0.5,
-        unpaired_m=0.1,
+        Bounds([], unpaired_m=0.1),
+        views,
+        np.array([sensors_m[scan_id][:2] for scan_id in sensors_m]),
+        RoomSettings(min_area_m2=1.0, min_walled=0.0, min_width_m=0.5),
         floor=floor,
     )
     assert sum(room.polygon.area for room in rooms) >= 0.9 * floor.area

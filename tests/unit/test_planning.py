@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +19,7 @@ from scanplan.plan import messages, planning, uncertainty, wall_faces, wall_grou
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.rays import beam_spread, free_space, ray_set
 
-SETTINGS = planning.make_plan_settings(**house_making.PLAN)
+SETTINGS = planning.make_plan_settings(house_making.PLAN)
 TRUST = SETTINGS.trust
 SENSORS = np.array(house_making.SENSORS, float)
 
@@ -33,7 +32,8 @@ def house():
 def plan(looked, table=None, sensors=SENSORS, settings=SETTINGS, threads=1):
     made = house_making.segments() if table is None else table
     t_ns = house_making.T_NS[: len(sensors)]
-    return planning.make_plan(made, looked, sensors[:, :2], t_ns, settings, threads=threads)
+    chosen = planning.ChosenScans(made, looked, t_ns)
+    return planning.make_plan(chosen, sensors[:, :2], settings, threads=threads)
 
 
 class TestPlan:
@@ -93,14 +93,12 @@ class TestPlan:
         flat = [(i, (xyz * [1, 1, 0])[::8]) for i, xyz in points]
         rays = ray_set.gather_rays(flat, dict(enumerate(SENSORS[:2])), planar=True)
 
-        def measure_room(**other: Any) -> float:
-            t_ns = house_making.T_NS[:2]
-            table = walls(house_making.ROOM_A * 2, scan_id=[0] * 5 + [1] * 5)
-            made = planning.make_plan(table, rays, SENSORS[:2, :2], t_ns, SETTINGS, **other)
-            return float(made.rooms["area_m2"].max())
-
-        for other in ({}, {"find_seen": lambda: shapely.box(2, 2, 4, 4)}):
-            assert measure_room(**other) == pytest.approx(16, rel=0.02)
+        table = walls(house_making.ROOM_A * 2, scan_id=[0] * 5 + [1] * 5)
+        chosen = planning.ChosenScans(table, rays, house_making.T_NS[:2])
+        for find_floor in (None, lambda: shapely.box(2, 2, 4, 4)):
+            others = planning.OtherScans(find_floor)
+            made = planning.make_plan(chosen, SENSORS[:2, :2], SETTINGS, others=others)
+            assert float(made.rooms["area_m2"].max()) == pytest.approx(16, rel=0.02)
 
     @pytest.mark.parametrize("sensor_z_m", [0.4, 0.9])
     def test_a_table_is_no_wall(self, sensor_z_m):
@@ -123,9 +121,9 @@ class TestPlan:
             house_making.HOUSE + pillar, SENSORS[:2] * [1, 0.5, 1] + [0, 0.3, 0]
         )
         table = walls(pillar[:1], scan_id=[0])
-        made = planning.make_plan(
-            table, _first(looked, sensors), SENSORS[:1, :2], house_making.T_NS[:sensors], SETTINGS
-        )
+        t_ns = house_making.T_NS[:sensors]
+        chosen = planning.ChosenScans(table, _first(looked, sensors), t_ns)
+        made = planning.make_plan(chosen, SENSORS[:1, :2], SETTINGS)
         # in its line, beyond a gap that leads to no room, is a jamb of the partition
         assert len(made.walls["wall"]) == 2 * walls_ and made.openings["wall"].max() < 0
         ends_m = np.minimum(made.walls["x0_m"], made.walls["x1_m"])
@@ -167,7 +165,9 @@ class TestPlan:
         away = moved(near, 0.0, (500, 0)) | {"scan_id": near["scan_id"] + 4}
         table = {c: np.concatenate([near[c], away[c]]) for c in near}
         found = ray_set.gather_rays(points, dict(enumerate(both)), planar=False)
-        made = planning.make_plan(table, found, both[:, :2], np.arange(8), SETTINGS)
+        made = planning.make_plan(
+            planning.ChosenScans(table, found, np.arange(8)), both[:, :2], SETTINGS
+        )
         assert len(made.rooms["room"]) == 4
         assert len(made.walls["wall"]) == 10
 

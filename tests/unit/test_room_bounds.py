@@ -9,12 +9,26 @@ from shapely import box
 
 from helpers.observation_making import line_through
 from scanplan.geometry.lines import Line
-from scanplan.plan.openings import OPEN, Opening
+from scanplan.plan.openings import OPEN, Opening, OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import room_bounds
+from scanplan.plan.wall_ground import Bounds
 
-LIMITS = {"min_area_m2": 1.0, "unpaired_m": 0.1, "max_door_m": 1.5}
+WAYS = OpeningSettings(
+    min_opening_m=0.5, max_opening_m=1.5, max_closed_m=1.5, max_door_m=1.5, door_height_m=1.9
+)
 SOUTH = Line(np.array([0.0, 0.0]), np.array([0.0, 1.0]))
+
+
+def find_partings(walls, ground, track_m, *, max_width_m=1.5, ways_m=(), **floor):
+    return room_bounds.find_partings(
+        Bounds(walls, unpaired_m=0.1),
+        room_bounds.Floor(ground, **floor),
+        track_m,
+        replace(WAYS, max_opening_m=max_width_m),
+        min_area_m2=1.0,
+        ways_m=ways_m,
+    )
 
 
 def wall(x0, y0, x1, y1, openings=()):
@@ -79,7 +93,7 @@ def test_floor_without_a_door_is_parted_on_the_line_of_the_wall_beside():
     wall = PlanWall(Line(np.array([4.05, 0.0]), np.array([1.0, 0.0])), -1.6, 0.0, 0.1, [], [])
     rooms = shapely.union_all([box(0, 0, 4, 4), box(4.1, 0, 8, 4), box(3.9, 1.6, 4.2, 2.5)])
     track_m = np.array([[2.0, 2.0], [6.0, 2.0]])
-    (parting,) = room_bounds.find_partings([wall], rooms, track_m, max_width_m=1.5, **LIMITS)
+    (parting,) = find_partings([wall], rooms, track_m)
     (way,) = parting.openings
     np.testing.assert_allclose(parting.line.at(way.low_m)[0], 4.05)
     assert abs(way.width_m - 0.9) < 0.1
@@ -91,9 +105,7 @@ TRACK_M = np.array([[2.0, 2.0], [6.0, 2.0]])
 
 
 def part(walls, *, planar=True, floor=TWO_ROOMS, hidden=None):
-    return room_bounds.find_partings(
-        walls, floor, TRACK_M, max_width_m=1.5, planar=planar, hidden=hidden, **LIMITS
-    )
+    return find_partings(walls, floor, TRACK_M, planar=planar, hidden=hidden)
 
 
 def test_a_gap_wider_than_a_door_parts_rooms_in_the_line_of_a_longer_wall():
@@ -154,9 +166,7 @@ def corridor_partings(unseen, others=()):
     track_m = np.array([[1.0, 0.6], [6.0, 0.6], [11.0, 0.6]])
     floor = box(0, 0, 12, 2).difference(unseen)
     ends = [wall(0, -0.05, 0, 2.05), wall(12, 2.05, 12, -0.05)]
-    return room_bounds.find_partings(
-        *([*sides, *ends, *others], floor, track_m), max_width_m=1.5, planar=True, **LIMITS
-    )
+    return find_partings([*sides, *ends, *others], floor, track_m, planar=True)
 
 
 @pytest.mark.parametrize(("max_width_m", "count"), [(2.2, 1), (1.5, 0)])
@@ -164,7 +174,7 @@ def test_what_is_as_wide_as_an_opening_parts_rooms(max_width_m, count):
     """A passage of 1.8 m between two halls, in no wall that was seen."""
     halls = shapely.union_all([box(0, 0, 6, 8), box(6.2, 0, 12, 8), box(5.9, 3, 6.3, 4.8)])
     track_m = np.array([[3.0, 4.0], [6.1, 4.0], [9.0, 4.0]])
-    found = room_bounds.find_partings([], halls, track_m, max_width_m=max_width_m, **LIMITS)
+    found = find_partings([], halls, track_m, max_width_m=max_width_m)
     assert len(found) == count
 
 
@@ -183,9 +193,9 @@ def test_what_stands_into_a_corridor_parts_it():
 def test_a_door_whose_leaf_was_seen_parts_floor_where_no_wall_has_it(turn):
     """Two sides of a leaf tell of one door, 1 m wide, in the gap of 2.4 m."""
     way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
-    (parting,) = room_bounds.find_partings(
+    (parting,) = find_partings(
         *([], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 0.5, **LIMITS},
+        max_width_m=0.5,
         ways_m=[way_m, way_m[::turn] + 0.02],
     )
     (way,) = parting.openings
@@ -196,9 +206,9 @@ def test_a_door_whose_leaf_was_seen_parts_floor_where_no_wall_has_it(turn):
 def test_a_door_that_a_wall_has_is_not_parted_twice():
     way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
     assert (
-        room_bounds.find_partings(
+        find_partings(
             *([wall(4.05, 0, 4.05, 4)], TWO_ROOMS, TRACK_M),
-            **{"max_width_m": 0.5, **LIMITS},
+            max_width_m=0.5,
             ways_m=[way_m],
         )
         == []
@@ -243,10 +253,7 @@ def hall_partings(spur, others=(), across=((10, 8, 0, 8),), thickness_m=0.1):
     end = PlanWall(line_through(x_m, -0.5, x_m, high_m), 0.0, high_m + 0.5, thickness_m, [], [])
     around = [*(wall(*ends) for ends in across), *others]
     track_m = np.array([[2.0, 4.0], [5.0, 7.5], [8.0, 4.0]])
-    return room_bounds.find_partings(
-        *([end, *around], HALL, track_m),
-        **{"max_width_m": 1.5, **LIMITS, "planar": True, "hidden": box(4, 7, 6, 8)},
-    )
+    return find_partings([end, *around], HALL, track_m, planar=True, hidden=box(4, 7, 6, 8))
 
 
 def test_a_wide_opening_beside_a_spur_parts_nothing():
@@ -272,9 +279,9 @@ def test_a_screen_beyond_a_free_end_is_no_wall_across():
 def test_what_is_hidden_beside_a_door_parts_floor_with_it():
     """A leaf told of a door 1 m wide in a gap of 2.4 m: the rest is no wider than a door."""
     way_m = np.array([(4.05, 1.0), (4.05, 2.0)])
-    found = room_bounds.find_partings(
+    found = find_partings(
         *([wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 1.5, **LIMITS, "planar": True},
+        planar=True,
         ways_m=[way_m],
     )
     widths_m = sorted(parting.openings[0].width_m for parting in found)
@@ -286,9 +293,9 @@ def test_what_is_hidden_beside_a_door_parts_floor_with_it():
 @pytest.mark.parametrize(("hidden_m", "kind"), [(2.0, "unseen"), (1.0, "gap")])
 def test_what_furniture_hides_of_a_parting_is_not_known_to_be_a_way(hidden_m, kind):
     """Furniture stands on that much of a gap of 2.4 m, on either side of the line."""
-    (parting,) = room_bounds.find_partings(
+    (parting,) = find_partings(
         *([wall(4.05, -2, 4.05, 1), wall(4.05, 3.4, 4.05, 4)], TWO_ROOMS, TRACK_M),
-        **{"max_width_m": 1.5, **LIMITS, "planar": True},
+        planar=True,
         hidden=box(3.5, 1.0, 4.6, 1.0 + hidden_m),
     )
     (way,) = parting.openings

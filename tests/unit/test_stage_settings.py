@@ -113,7 +113,7 @@ def test_the_settings_classes_take_what_is_selected():
         assert least | more <= set(selected) <= own.keys() | more
     cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
     wall_cells.WallCellSettings(**cells)
-    planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
+    planning.make_plan_settings(stage_settings.select_plan(SETTINGS))
     prediction.ValidationSettings(**stage_settings.select_validation(SETTINGS))
     next_visit.VisitSettings(**stage_settings.select_visit(SETTINGS))
     registration_settings(stage_settings.select_section(SETTINGS, "registration"))

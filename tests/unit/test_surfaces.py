@@ -8,9 +8,10 @@ from helpers import furnished_house as house
 from helpers.house_making import PLAN
 from scanplan.plan import planning
 from scanplan.plan.model.surfaces import label_surfaces
+from scanplan.plan.model.wall_labels import LabelEvidence
 from scanplan.store import schemas
 
-SETTINGS = planning.make_plan_settings(**PLAN)
+SETTINGS = planning.make_plan_settings(PLAN)
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +21,9 @@ def looked():
 
 @pytest.fixture(scope="module")
 def made(looked):
-    return planning.make_plan(house.segments(), looked, house.SENSORS[:, :2], house.T_NS, SETTINGS)
+    return planning.make_plan(
+        planning.ChosenScans(house.segments(), looked, house.T_NS), house.SENSORS[:, :2], SETTINGS
+    )
 
 
 def ends_m(table):
@@ -82,5 +85,5 @@ class TestWholePlan:
 
 
 def test_of_no_walls_there_are_no_surfaces(looked):
-    found = label_surfaces([], looked, np.empty((0, 2)), max_opening_m=2.0, max_door_m=1.2)
+    found = label_surfaces([], LabelEvidence(looked, np.empty((0, 2)), 2.0), max_door_m=1.2)
     assert found.walls == found.tops_m == found.leaves_m == []

@@ -11,7 +11,7 @@ from scanplan.plan import planning
 from scanplan.plan.faces import tracing
 from scanplan.project import stage_settings
 
-_SETTINGS = planning.make_plan_settings(**stage_settings.select_plan(SETTINGS))
+_SETTINGS = planning.make_plan_settings(stage_settings.select_plan(SETTINGS))
 SELECTION = tracing._FaceSelection(_SETTINGS.merge, _SETTINGS.pairs)
 
 

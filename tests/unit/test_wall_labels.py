@@ -16,15 +16,19 @@ from helpers.label_making import (
 from scanplan.plan.model import things
 from scanplan.plan.model.surface_counts import BEYOND, FACE, PASSED, SHALLOW, add_passages
 from scanplan.plan.model.surfaces import label_surfaces
-from scanplan.plan.model.wall_labels import count_wall, label_wall
+from scanplan.plan.model.wall_labels import LabelEvidence, count_wall, label_wall
 
 MAX_OPENING_M = 2.0
 NO_WAY_M = np.empty((0, 2))
-WIDEST_M = {"max_opening_m": MAX_OPENING_M, "max_door_m": 1.2}
+MAX_DOOR_M = 1.2
+
+
+def evidence(looked):
+    return LabelEvidence(looked, NO_WAY_M, MAX_OPENING_M)
 
 
 def parts(wall, looked):
-    return list(label_wall(wall, looked, NO_WAY_M, max_opening_m=MAX_OPENING_M))
+    return list(label_wall(wall, evidence(looked)))
 
 
 def spans_x(spans):
@@ -67,8 +71,7 @@ class TestParts:
         scans = scans_at(5, with_hole((1.2, 2.6)), ceiling_m=HALL_M)
         wall, looked = paired(scans, [(0, 1.2), (2.6, 5)], length_m=5.0)
         crossed_m = np.array([(1.0, 1.4), (2.4, 2.8)])
-        named = {"max_opening_m": MAX_OPENING_M, "crossed_m": crossed_m}
-        assert len(list(label_wall(wall, looked, NO_WAY_M, **named))) == 2
+        assert len(list(label_wall(wall, evidence(looked), crossed_m=crossed_m))) == 2
 
     @pytest.mark.parametrize(("wide_m", "n_parts"), [(1.4, 1), (2.6, 2)])
     def test_what_is_open_for_long_parts_a_wall_in_two(self, wide_m, n_parts):
@@ -168,7 +171,7 @@ class TestLowParts:
 
         monkeypatch.setattr(things, "weigh_things", keep)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
+        found = label_surfaces([wall], evidence(looked), max_door_m=MAX_DOOR_M)
         np.testing.assert_allclose(spans_x(found.walls), [(0, 3), (3, 5)], atol=0.06)
         assert [features.overlooked for features in asked] == [0, pytest.approx(1, abs=0.05)]
         assert np.isnan(found.tops_m).all()
@@ -180,7 +183,7 @@ class TestLowParts:
         p = np.array([[1.0, 0, 0, 0], [p_wall, 1 - p_wall, 0, 0]])
         monkeypatch.setattr(things, "weigh_things", lambda *_: p)
         wall, looked = paired(self.look(), [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
+        found = label_surfaces([wall], evidence(looked), max_door_m=MAX_DOOR_M)
         assert [part.p_wall for part in found.walls] == [1.0]
         assert [(near.kind, near.p) for near in found.nearly] == [("wall", p_wall)] * n_nearly
         for near in found.nearly:
@@ -189,7 +192,7 @@ class TestLowParts:
     def test_it_stays_where_both_sides_were_seen(self):
         scans = self.look() + self.look(SOUTH_M, -0.2)
         wall, looked = paired(scans, [(0, 5)], [(0, 5)], length_m=5.0)
-        found = label_surfaces([wall], looked, NO_WAY_M, **WIDEST_M)
+        found = label_surfaces([wall], evidence(looked), max_door_m=MAX_DOOR_M)
         assert [round(part.length_m, 1) for part in found.walls] == [3, 2]
         assert found.tops_m == pytest.approx([np.nan, 1.1], nan_ok=True)
 

@@ -14,7 +14,7 @@ from scanplan.plan.openings import classify_gap
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.walls import assemble_walls
 
-SETTINGS = planning.make_plan_settings(**house_making.PLAN)
+SETTINGS = planning.make_plan_settings(house_making.PLAN)
 
 
 def stretches(x0, y0, x1, y1, solid, crossed=(), lintel=()):
@@ -37,7 +37,6 @@ def openings(*found):
             SETTINGS.openings,
         ),
         corner_m=0.25,
-        door_height_m=SETTINGS.reading.door_height_m,
     )
     return [
         np.sort(w.line.at(np.array([g.low_m, g.high_m]))[:, 0]) for w in walls for g in w.openings
@@ -84,11 +83,8 @@ def parts_at_pillars(solid, crossed, lintel=(), others=(), glass=()):
         stretches(0, 0, 6, 0, solid, crossed, lintel) + [s for of_line in others for s in of_line],
         *(SETTINGS.pairs, SETTINGS.openings),
         corner_m=0.25,
-        door_height_m=SETTINGS.reading.door_height_m,
     )
-    classify = functools.partial(
-        classify_gap, settings=SETTINGS.openings, door_height_m=SETTINGS.reading.door_height_m
-    )
+    classify = functools.partial(classify_gap, settings=SETTINGS.openings)
     found = cut_off_pillars(made, glass, classify, min_width_m=0.6, max_thickness_m=0.6)
     of_wall = next(
         parts for parts in found if any(abs(part.line.normal[1]) > 0.9 for part in parts)
@@ -130,7 +126,6 @@ def ends(*found):
             SETTINGS.openings,
         ),
         corner_m=0.25,
-        door_height_m=SETTINGS.reading.door_height_m,
     )
     return [np.sort(w.ends[:, 0]) for w in walls if abs(w.line.normal[1]) > 0.9]
 

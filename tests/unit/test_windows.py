@@ -16,7 +16,9 @@ from scanplan.plan import planning
 def plan(ends):
     table = walls([face for _ in SENSORS for face in ROOM], scan_id=np.repeat(np.arange(4), 4))
     looked = look((1.0, 2.2), (0.85, 2.4), ends=ends)
-    return planning.make_plan(table, looked, np.array(SENSORS)[:, :2], house_making.T_NS, SETTINGS)
+    return planning.make_plan(
+        planning.ChosenScans(table, looked, house_making.T_NS), np.array(SENSORS)[:, :2], SETTINGS
+    )
 
 
 @pytest.mark.parametrize("ends", [LOST, BEYOND])

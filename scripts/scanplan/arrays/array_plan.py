@@ -279,17 +279,13 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
         left_out=placed.left_out,
         threads=threads,
     )
-    poses = placed.known.map_from_sensor
     plan = planning.make_plan(
-        found,
-        rays,
-        poses[:, :2, 3],
-        placed.known.t_ns[rows],
-        planning.make_plan_settings(**stage_settings.select_plan(placed.settings)),
-        poses[rows, :3, 2],
-        placed.known.covariance[rows],
-        find_seen=find_seen if flat.planar else None,
-        find_dense=find_dense if placed.planar else None,
+        planning.ChosenScans.of_registered(found, rays, placed.known, rows),
+        placed.known.map_from_sensor[:, :2, 3],
+        planning.make_plan_settings(stage_settings.select_plan(placed.settings)),
+        others=planning.OtherScans(
+            find_seen if flat.planar else None, find_dense if placed.planar else None
+        ),
         threads=threads,
     )
     messages.check_plan(_ORIGIN, plan, n_segments, len(rows))

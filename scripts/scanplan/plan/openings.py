@@ -38,12 +38,15 @@ class OpeningSettings:
         A gap up to this length that no ray went through is wall, too.
     max_door_m : float
         A wider opening is a passage.
+    door_height_m : float
+        Above the floor; what is higher says nothing about a way through.
     """
 
     min_opening_m: float
     max_opening_m: float
     max_closed_m: float
     max_door_m: float
+    door_height_m: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +103,6 @@ def classify_gap(
     faces: Sequence[FaceObservation],
     settings: OpeningSettings,
     *,
-    door_height_m: float,
     needs_lintel: bool = False,
 ) -> Opening:
     """Classify a gap of a wall as open, closed or unknown by what rays show of its faces there.
@@ -113,8 +115,6 @@ def classify_gap(
     faces : list of face_observation.FaceObservation
         Of the wall's sides.
     settings : OpeningSettings
-    door_height_m : float
-        What is higher says nothing about a way through.
     needs_lintel : bool
         Whether only what has wall above it is an opening: where no wall follows, anything could be
         beside a wall.
@@ -128,7 +128,7 @@ def classify_gap(
     ends = wall_line.at(np.array([low_m, high_m]))
     spans_m = [np.sort(face.line.along_m(ends)) for face in faces]
     shown = [
-        _observe_gap(face, span_m, door_height_m)
+        _observe_gap(face, span_m, settings.door_height_m)
         for face, span_m in zip(faces, spans_m, strict=True)
     ]
     shown.sort(key=lambda side: (side.n_rays, side.open_share), reverse=True)

@@ -4,6 +4,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import shapely
@@ -23,6 +24,7 @@ from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.likely_openings import settle_openings
 from scanplan.plan.model.surfaces import label_surfaces
+from scanplan.plan.model.wall_labels import LabelEvidence
 from scanplan.plan.openings import OpeningSettings, classify_gap
 from scanplan.plan.plan_wall import (
     Nearly,
@@ -32,7 +34,7 @@ from scanplan.plan.plan_wall import (
     usual_thickness_m,
 )
 from scanplan.plan.rooms import room_bounds
-from scanplan.plan.rooms.room import Room
+from scanplan.plan.rooms.room import Room, RoomSettings
 from scanplan.plan.rooms.room_outlines import find_rooms
 from scanplan.plan.uncertainty import ReviewCriteria
 from scanplan.plan.wall_pairs import PairSettings
@@ -42,6 +44,7 @@ from scanplan.rays.face_observation import RaySettings
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.store import schemas
+from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import Array, Columns, FloatArray, IntArray, Settings
 
 TABLES = {
@@ -75,22 +78,6 @@ class FurnitureSettings:
 
 
 @dataclass(frozen=True)
-class RoomSettings:
-    """What a room is.
-
-    Attributes
-    ----------
-    min_area_m2 : float, > 0
-    min_walled : float, 0 to 1
-        Least share of the outline of a room that no sensor was in, that runs along walls and
-        openings.
-    """
-
-    min_area_m2: float
-    min_walled: float
-
-
-@dataclass(frozen=True)
 class PlanSettings:
     """All that a plan is made with: each part as its own class says."""
 
@@ -102,6 +89,57 @@ class PlanSettings:
     openings: OpeningSettings
     rooms: RoomSettings
     trust: ReviewCriteria
+
+
+@dataclass(frozen=True, eq=False)
+class ChosenScans:
+    """What the chosen scans show, and how they stand.
+
+    Attributes
+    ----------
+    segments : dict of str to (n,) array
+        The columns of `schemas.WALLS`.
+    rays : ray_set.RaySet
+    t_ns : (s,) int64
+        When each was taken.
+    up : (s, 3) float, optional
+        The axis that the beams of each sensor are inclined to, in the map frame; plumb by default.
+    covariance : (s, 3, 3) float64, optional
+        Of the x, y and heading of each, metres and radians; NaN where it is not known, which it is
+        nowhere by default.
+    """
+
+    segments: Columns
+    rays: RaySet
+    t_ns: IntArray
+    up: FloatArray | None = None
+    covariance: FloatArray | None = None
+
+    @classmethod
+    def of_registered(
+        cls, segments: Columns, rays: RaySet, registered: RegisteredScans, rows: IntArray
+    ) -> Self:
+        """Return these of the registered scans at rows (s,), in the order of the rays' scans."""
+        up = registered.map_from_sensor[rows, :3, 2]
+        return cls(segments, rays, registered.t_ns[rows], up, registered.covariance[rows])
+
+
+@dataclass(frozen=True)
+class OtherScans:
+    """What planar scans saw that were not chosen, too.
+
+    Attributes
+    ----------
+    find_floor : callable, optional
+        Returns the floor that all saw: rooms are made of it. By default it is what the chosen ones
+        saw.
+    find_rays : callable, optional
+        Returns rays from all along the way, see `fronts.gather_dense_rays`: panes are found by
+        them. By default they are the chosen ones'.
+    """
+
+    find_floor: Callable[[], BaseGeometry] | None = None
+    find_rays: Callable[[], RaySet] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,18 +170,8 @@ class Plan:
     nearly: list[Nearly]
 
 
-def make_plan_settings(
-    *,
-    merge: Settings,
-    trace: Settings,
-    ranges: Settings,
-    furniture: Settings,
-    pair: Settings,
-    openings: Settings,
-    rooms: Settings,
-    trust: Settings,
-) -> PlanSettings:
-    """Return settings from keywords of each part.
+def make_plan_settings(keywords: Settings) -> PlanSettings:
+    """Return settings from the keywords of each part, by its name.
 
     Raises
     ------
@@ -151,28 +179,25 @@ def make_plan_settings(
         If one is out of its range.
     """
     return PlanSettings(
-        merge=MergeSettings(**merge),
-        reading=RaySettings(**trace),
-        ranges=range_bias.RangeBiasSettings(**ranges),
-        furniture=FurnitureSettings(**furniture),
-        pairs=PairSettings(**pair, max_gap_m=openings["max_opening_m"]),
-        openings=OpeningSettings(**openings),
-        rooms=RoomSettings(**rooms),
-        trust=ReviewCriteria(**trust),
+        merge=MergeSettings(**keywords["merge"]),
+        reading=RaySettings(**keywords["trace"]),
+        ranges=range_bias.RangeBiasSettings(**keywords["ranges"]),
+        furniture=FurnitureSettings(**keywords["furniture"]),
+        pairs=PairSettings(**keywords["pair"], max_gap_m=keywords["openings"]["max_opening_m"]),
+        openings=OpeningSettings(
+            **keywords["openings"], door_height_m=keywords["trace"]["door_height_m"]
+        ),
+        rooms=RoomSettings(**keywords["rooms"], min_width_m=keywords["pair"]["max_thickness_m"]),
+        trust=ReviewCriteria(**keywords["trust"]),
     )
 
 
 def make_plan(
-    segments: Columns,
-    rays: RaySet,
+    chosen: ChosenScans,
     track_m: FloatArray,
-    t_ns: IntArray,
     settings: PlanSettings,
-    up: FloatArray | None = None,
-    covariance: FloatArray | None = None,
     *,
-    find_seen: Callable[[], BaseGeometry] | None = None,
-    find_dense: Callable[[], RaySet] | None = None,
+    others: OtherScans = OtherScans(),
     designed: DesignedWalls | None = None,
     threads: int = 1,
 ) -> Plan:
@@ -180,27 +205,12 @@ def make_plan(
 
     Parameters
     ----------
-    segments : dict of str to (n,) array
-        The columns of `schemas.WALLS`, of the chosen scans.
-    rays : ray_set.RaySet
-        Of the chosen scans.
+    chosen : ChosenScans
     track_m : (k, 2) float64
         Where the sensor was, of all registered scans.
-    t_ns : (s,) int64
-        When each of the chosen scans was taken.
     settings : PlanSettings
-    up : (s, 3) float, optional
-        The axis that the beams of each chosen scan's sensor are inclined to, in the map frame;
-        plumb by default.
-    covariance : (s, 3, 3) float64, optional
-        Of the x, y and heading of each chosen scan, metres and radians; NaN where it is not known,
-        which it is nowhere by default.
-    find_seen : callable, optional
-        Returns the floor that planar scans saw, those that were not chosen, too: rooms are made of
-        it. By default it is what the chosen ones saw.
-    find_dense : callable, optional
-        Returns the rays of planar scans from all along the way, chosen or not, see
-        `fronts.gather_dense_rays`: panes are found by them. By default they are the chosen ones'.
+    others : OtherScans
+        Of planar scans.
     designed : DesignedWalls, optional
         A design that walls are likelier to be as, in the map frame.
     threads : int
@@ -211,7 +221,8 @@ def make_plan(
     Plan
         Without any row of faces or walls where nothing is supported enough.
     """
-    up = _stand_plumb(rays) if up is None else up
+    segments, rays = chosen.segments, chosen.rays
+    up = _stand_plumb(rays) if chosen.up is None else chosen.up
     rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
     errors_m = range_bias.estimate_range_bias(
         rays, segments, settings.ranges, settings.reading.band_m, up
@@ -223,10 +234,12 @@ def make_plan(
         *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
     )
     dense = rays
-    if find_dense is not None:
-        dense = find_dense()
+    if others.find_rays is not None:
+        dense = others.find_rays()
         dense = range_bias.remove_range_bias(dense, errors_m, _stand_plumb(dense), threads)
-    survey = _Survey(settings, rays, dense, track_m, find_free, find_seen, designed, threads)
+    survey = _Survey(
+        settings, rays, dense, track_m, find_free, others.find_floor, designed, threads
+    )
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     surfaces = _settle(surfaces, spaces, settings.openings.max_door_m)
@@ -239,11 +252,11 @@ def make_plan(
     )
     face_columns, main_rows = plan_tables.face_columns(cut_walls, floor_z_m)
     scans = uncertainty.place_scans(
-        rays.sensors_m[:, :2], covariance, settings.merge.registration_sigma_m
+        rays.sensors_m[:, :2], chosen.covariance, settings.merge.registration_sigma_m
     )
     evidence = uncertainty.estimate_evidence(walls, surfaces.tops_m, scans)
     doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
-    free_floor = _find_free_floor(surfaces.bounds, survey.floor, surfaces.unpaired_m)
+    free_floor = _find_free_floor(surfaces.bounds, survey.floor)
     return Plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
@@ -252,7 +265,7 @@ def make_plan(
             *(surfaces.glass_walls, spaces.partings, bare),
         ),
         rooms=plan_tables.room_columns(spaces.rooms),
-        evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, t_ns),
+        evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, chosen.t_ns),
         free=plan_tables.free_columns(free_floor),
         furniture=plan_tables.furniture_columns(
             spaces.pieces, floor_z_m, leaves_m=surfaces.open_leaves_m
@@ -298,10 +311,10 @@ class _Surfaces:
     n_lines: int
     n_dropped: int
 
-    @property
-    def bounds(self) -> list[PlanWall]:
+    @functools.cached_property
+    def bounds(self) -> wall_ground.Bounds:
         """What bounds rooms."""
-        return [*self.walls, *self.glass_walls]
+        return wall_ground.Bounds([*self.walls, *self.glass_walls], self.unpaired_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -367,12 +380,10 @@ class _Survey:
         walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
-        labelled = label_surfaces(
-            *(walls, self.rays, self.track_m),
-            max_opening_m=self.settings.openings.max_opening_m,
-            max_door_m=self.settings.openings.max_door_m,
-            designed=self.designed,
+        evidence = LabelEvidence(
+            self.rays, self.track_m, self.settings.openings.max_opening_m, self.designed
         )
+        labelled = label_surfaces(walls, evidence, max_door_m=self.settings.openings.max_door_m)
         glass = find_fronts(labelled.walls, self.dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(
             *(labelled.walls, glass.panes),
@@ -413,17 +424,18 @@ class _Survey:
             pairing=self.settings.pairs,
             opening=self.settings.openings,
             corner_m=self.settings.merge.corner_m,
-            door_height_m=self.settings.reading.door_height_m,
         )
         walls = assemble(faces)
         if not self.rays.planar:
             return walls, [], []
-        walls, furnished, leaves = fronts.drop_fronts(
-            *(walls, self.floor, self.seen, assemble, usual_thickness_m),
+        limits = fronts.FrontLimits(
             max_door_m=self.settings.openings.max_door_m,
             max_thickness_m=self.settings.pairs.max_thickness_m,
             max_depth_m=self.settings.furniture.furniture_depth_m,
             ghost_distance_m=self.settings.merge.ghost_distance_m,
+        )
+        walls, furnished, leaves = fronts.drop_fronts(
+            walls, self.floor, self.seen, assemble, limits
         )
         # a plane shows no more of what is between two faces than its ends
         most_m = greatest_thickness_m(walls)
@@ -444,11 +456,7 @@ class _Survey:
         if self.rays.planar:
             return walls, tops_m
         max_width_m = self.settings.pairs.max_thickness_m
-        classify = functools.partial(
-            classify_gap,
-            settings=self.settings.openings,
-            door_height_m=self.settings.reading.door_height_m,
-        )
+        classify = functools.partial(classify_gap, settings=self.settings.openings)
         cut = cut_off_pillars(
             *(walls, glass_walls, classify),
             min_width_m=self.settings.openings.min_opening_m,
@@ -468,32 +476,28 @@ class _Survey:
 
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
-        min_area_m2 = self.settings.rooms.min_area_m2
-        floor = self._floor_with(surfaces.furnished)
+        bounds, floor = surfaces.bounds, self._floor_with(surfaces.furnished)
+        hidden = free_space.difference_on_grid(floor, self.seen)
         partings = room_bounds.find_partings(
-            *(surfaces.bounds, floor, self.track_m),
-            max_width_m=self.settings.openings.max_opening_m,
-            max_door_m=self.settings.openings.max_door_m,
-            min_area_m2=min_area_m2,
-            unpaired_m=surfaces.unpaired_m,
-            planar=self.rays.planar,
+            bounds,
+            room_bounds.Floor(floor, planar=self.rays.planar, hidden=hidden),
+            self.track_m,
+            self.settings.openings,
+            min_area_m2=self.settings.rooms.min_area_m2,
             ways_m=surfaces.ways_m,
-            hidden=free_space.difference_on_grid(floor, self.seen),
         )
         rooms = find_rooms(
-            *([*surfaces.bounds, *partings], self.views, self.track_m),
-            min_area_m2=min_area_m2,
-            min_walled=self.settings.rooms.min_walled,
-            min_width_m=self.settings.pairs.max_thickness_m,
-            unpaired_m=surfaces.unpaired_m,
+            wall_ground.Bounds([*bounds.walls, *partings], bounds.unpaired_m),
+            self.views,
+            self.track_m,
+            self.settings.rooms,
             floor=floor,
             threads=self.threads,
         )
-        strips = wall_ground.wall_strips(surfaces.bounds, surfaces.unpaired_m)
         # returns of leaves are explained, as those of walls are
         leaves = [plan_tables.draw_leaf(ends_m) for ends_m in surfaces.open_leaves_m]
         pieces = find_pieces(
-            *(self.rays, [*strips, *leaves]),
+            *(self.rays, [*bounds.strips, *leaves]),
             *([room.polygon for room in rooms], self.views),
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
@@ -502,7 +506,7 @@ class _Survey:
         rooms = [room for room in rooms if room.n_scans]
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         pieces = tell_columns(
-            *(pieces, self.rays, strips),
+            *(pieces, self.rays, bounds.strips),
             furniture_height_m=self.settings.furniture.furniture_height_m,
             max_width_m=self.settings.pairs.max_thickness_m,
         )
@@ -512,7 +516,7 @@ class _Survey:
         """Return the spans of rooms' outlines where nothing is drawn."""
         return wall_ground.find_bare_spans(
             [room.polygon for room in spaces.rooms],
-            *([*surfaces.bounds, *spaces.partings], self.floor),
+            *([*surfaces.bounds.walls, *spaces.partings], self.floor),
             unpaired_m=surfaces.unpaired_m,
             min_length_m=self.settings.openings.min_opening_m,
         )
@@ -549,17 +553,14 @@ def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: fl
 
 
 def _find_free_floor(
-    walls: list[PlanWall], floor: shapely.MultiPolygon, unpaired_m: float
+    bounds: wall_ground.Bounds, floor: shapely.MultiPolygon
 ) -> list[shapely.Polygon]:
     """Return the polygons of floor that rays went over, openings with it, walls without."""
-    strips = wall_ground.wall_strips(walls, unpaired_m)
     ways = [
-        wall_ground.opening_polygon(wall, opening, unpaired_m)
-        for wall in walls
+        wall_ground.opening_polygon(wall, opening, bounds.unpaired_m)
+        for wall in bounds.walls
         for opening in wall.openings
         if opening.kind == "door"
     ]
-    solid = free_space.difference_on_grid(
-        free_space.union_on_grid(strips), free_space.union_on_grid(ways)
-    )
+    solid = free_space.difference_on_grid(bounds.solid, free_space.union_on_grid(ways))
     return list(free_space.difference_on_grid(floor, solid).geoms)

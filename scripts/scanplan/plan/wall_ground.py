@@ -2,17 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.plan.openings import GAP, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.rays.free_space import GRID_M
+from scanplan.rays.free_space import GRID_M, union_on_grid
 from scanplan.types import FloatArray
 
 UNSEEN = "unseen"
@@ -35,6 +36,32 @@ class BareSpan:
     ends_m: FloatArray
     room: int
     kind: str
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """What parts floor.
+
+    Attributes
+    ----------
+    walls : sequence of plan_wall.PlanWall
+        Walls, glass and partings.
+    unpaired_m : float
+        As in `wall_strips`.
+    """
+
+    walls: Sequence[PlanWall]
+    unpaired_m: float
+
+    @cached_property
+    def strips(self) -> list[Polygon]:
+        """The ground that each stands on."""
+        return wall_strips(self.walls, self.unpaired_m)
+
+    @cached_property
+    def solid(self) -> MultiPolygon:
+        """The ground that all stand on."""
+        return union_on_grid(self.strips)
 
 
 def wall_strips(walls: Sequence[PlanWall], unpaired_m: float) -> list[Polygon]:

@@ -34,7 +34,6 @@ def assemble_walls(
     opening: OpeningSettings,
     *,
     corner_m: float,
-    door_height_m: float,
 ) -> list[PlanWall]:
     """Make walls of faces.
 
@@ -52,16 +51,14 @@ def assemble_walls(
     opening : openings.OpeningSettings
     corner_m : float
         Ends no farther from a wall meet it.
-    door_height_m : float
-        What is higher says nothing about a way through.
 
     Returns
     -------
     list of plan_wall.PlanWall
         The longest first.
     """
-    paired = wall_pairs.pair_faces(faces, pairing, door_height_m=door_height_m)
-    assembly = _Assembly(opening, corner_m, door_height_m)
+    paired = wall_pairs.pair_faces(faces, pairing, door_height_m=opening.door_height_m)
+    assembly = _Assembly(opening, corner_m)
     walls = [part for wall in paired for part in assembly.cut(wall)]
     for change in (
         assembly.extend_over_openings,
@@ -81,7 +78,6 @@ class _Assembly:
 
     settings: OpeningSettings
     corner_m: float
-    door_height_m: float
 
     def cut(self, wall: PlanWall) -> list[PlanWall]:
         """Return the parts of a wall between long gaps that are neither open nor closed."""
@@ -169,9 +165,7 @@ class _Assembly:
         self, wall: PlanWall, low_m: float, high_m: float, *, needs_lintel: bool = False
     ) -> Opening:
         return classify_gap(
-            *(wall.line, low_m, high_m, wall.lines, self.settings),
-            door_height_m=self.door_height_m,
-            needs_lintel=needs_lintel,
+            *(wall.line, low_m, high_m, wall.lines, self.settings), needs_lintel=needs_lintel
         )
 
 

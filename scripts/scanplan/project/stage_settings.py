@@ -138,7 +138,7 @@ def select_extractors(settings: Settings, extractors: Iterable[str]) -> dict[str
 
 
 def select_plan(settings: Settings) -> Keywords:
-    """Return the keywords of `planning.make_plan_settings`, part by part."""
+    """Return what `planning.make_plan_settings` takes: keywords by part."""
     plan, building = select_section(settings, "plan"), settings["building"]
     walls = select_section(settings, "walls")
     gap = {"max_gap_m": walls["max_gap_m"]}

@@ -44,7 +44,7 @@ class TimedSurvey:
     store : tables.ScanStore
     search : wall_search.WallSearch
     plan : dict
-        Keywords of `planning.make_plan_settings`.
+        What `planning.make_plan_settings` takes.
     bitmap_cell_m : float
     """
 
@@ -84,13 +84,9 @@ class TimedSurvey:
         scans = self.store.scans(scan_ids)
         rays = ray_set.gather_rays(scans, sensors_m, planar=self.store.planar)
         return planning.make_plan(
-            columns,
-            rays,
+            planning.ChosenScans.of_registered(columns, rays, known, rows),
             poses[:, :2, 3],
-            known.t_ns[rows],
-            planning.make_plan_settings(**self.plan),
-            poses[rows, :3, 2],
-            known.covariance[rows],
+            planning.make_plan_settings(self.plan),
         )
 
 

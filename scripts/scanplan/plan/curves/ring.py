@@ -186,9 +186,7 @@ class Ring:
         seen = observe_face(
             *(rays, line, -half_m - END_M, half_m + END_M), band_m=reading.band_m + 2 * END_M
         )
-        return classify_gap(
-            *(line, -half_m, half_m, [seen], opening), door_height_m=reading.door_height_m
-        )
+        return classify_gap(line, -half_m, half_m, [seen], opening)
 
     def _draw_wall(
         self,

@@ -121,12 +121,12 @@ def merge_segments(walls: Columns, settings: MergeSettings) -> list[FaceCandidat
     segments = lines.observed_segments(walls, registration_sigma_m=settings.registration_sigma_m)
     if len(segments.start) == 0:
         return []
-    groups = segment_groups.group_segments(
-        segments,
+    limits = segment_groups.GroupLimits(
         max_angle_rad=math.radians(settings.max_angle_deg),
         tolerance_m=settings.tolerance_m,
         reach_m=max(settings.max_gap_m, settings.align_gap_m),
     )
+    groups = segment_groups.group_segments(segments, limits)
     supported = [
         candidate
         for members in groups

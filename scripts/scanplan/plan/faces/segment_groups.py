@@ -1,6 +1,7 @@
 """Which wall segments are observations of the same face."""
 
 import heapq
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -17,9 +18,26 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 _MOST_ROUNDS = 100  # bounds the time of groups that settle in circles
 
 
-def group_segments(
-    segments: ObservedSegments, *, max_angle_rad: float, tolerance_m: float, reach_m: float
-) -> list[IntArray]:
+@dataclass(frozen=True)
+class GroupLimits:
+    """What segments of one group have in common.
+
+    Attributes
+    ----------
+    max_angle_rad : float
+        From a segment's way to that of the group's line.
+    tolerance_m : float
+        From a segment's ends to the line.
+    reach_m : float
+        Longest gap along the line that a group may bridge.
+    """
+
+    max_angle_rad: float
+    tolerance_m: float
+    reach_m: float
+
+
+def group_segments(segments: ObservedSegments, limits: GroupLimits) -> list[IntArray]:
     """Sort segments into groups, each around one line.
 
     Of every group, all members look the same way as its line within `max_angle_rad`, and both ends
@@ -31,30 +49,24 @@ def group_segments(
     Parameters
     ----------
     segments : lines.ObservedSegments
-    max_angle_rad : float
-    tolerance_m : float
-    reach_m : float
-        Longest gap along the line that a group may bridge.
+    limits : GroupLimits
 
     Returns
     -------
     list of (k,) int64 arrays
         Members of each group, ascending; every segment is in exactly one.
     """
-    limits = {"max_angle_rad": max_angle_rad, "tolerance_m": tolerance_m, "reach_m": reach_m}
-    return _join(segments, _grow(segments, **limits), **limits)
+    return _join(segments, _grow(segments, limits), limits)
 
 
-def _grow(
-    segments: ObservedSegments, *, max_angle_rad: float, tolerance_m: float, reach_m: float
-) -> list[IntArray]:
+def _grow(segments: ObservedSegments, limits: GroupLimits) -> list[IntArray]:
     """Return groups that settle around the heaviest segments in none yet."""
     tree = shapely.STRtree(_linestrings(segments.start, segments.end))
     free = np.ones(len(segments.start), bool)
     groups = []
     for seed in np.argsort(-segments.weight * segments.length_m**2, kind="stable").tolist():
         while free[seed]:
-            members = _settle(segments, tree, free, seed, max_angle_rad, tolerance_m, reach_m)
+            members = _settle(segments, tree, free, seed, limits)
             free[members] = False
             groups.append(members)
     return groups
@@ -65,9 +77,7 @@ def _settle(
     tree: shapely.STRtree,
     free: BoolArray,
     seed: int,
-    max_angle_rad: float,
-    tolerance_m: float,
-    reach_m: float,
+    limits: GroupLimits,
 ) -> IntArray:
     """Return the free segments of a group around `seed` that stay it, once it takes them up."""
     members = np.array([seed])
@@ -75,12 +85,13 @@ def _settle(
         line = fit_segments_line(segments, members)
         low_m, high_m = extents_along_m(line, segments, members)
         ends_m = line.at(np.array([low_m.min(), high_m.max()]))
+        reach_m = limits.reach_m
         box = shapely.box(*(ends_m.min(axis=0) - reach_m), *(ends_m.max(axis=0) + reach_m))
         near = np.sort(tree.query(box))
         near = near[free[near]]
         near_low_m, near_high_m = extents_along_m(line, segments, near)
         is_member = (
-            _fits(line, segments, near, max_angle_rad, tolerance_m)
+            _fits(line, segments, near, limits)
             & (near_low_m <= high_m.max() + reach_m)
             & (near_high_m >= low_m.min() - reach_m)
         )
@@ -88,55 +99,46 @@ def _settle(
         if len(refitted) == 0 or np.array_equal(refitted, members):
             break
         members = refitted
-    return _prune(segments, members, max_angle_rad, tolerance_m)
+    return _prune(segments, members, limits)
 
 
 def _fits(
     line: Line,
     segments: ObservedSegments,
     members: IntArray,
-    max_angle_rad: float,
-    tolerance_m: float,
+    limits: GroupLimits,
 ) -> BoolArray:
     """Return which members (k,) look the line's way, with both ends near it."""
-    same_way = segments.normal[members] @ line.normal >= np.cos(max_angle_rad)
-    return same_way & (end_deviation_m(line, segments, members) <= tolerance_m)
+    same_way = segments.normal[members] @ line.normal >= np.cos(limits.max_angle_rad)
+    return same_way & (end_deviation_m(line, segments, members) <= limits.tolerance_m)
 
 
-def _prune(
-    segments: ObservedSegments, members: IntArray, max_angle_rad: float, tolerance_m: float
-) -> IntArray:
+def _prune(segments: ObservedSegments, members: IntArray, limits: GroupLimits) -> IntArray:
     """Return the members without the worst ones, given back one by one until all fit.
 
     Of use only where settling went round in circles.
     """
     while len(members) > 1:
         line = fit_segments_line(segments, members)
-        if _fits(line, segments, members, max_angle_rad, tolerance_m).all():
+        if _fits(line, segments, members, limits).all():
             break
         members = np.delete(members, np.argmax(end_deviation_m(line, segments, members)))
     return members
 
 
 def _join(
-    segments: ObservedSegments,
-    groups: list[IntArray],
-    *,
-    max_angle_rad: float,
-    tolerance_m: float,
-    reach_m: float,
+    segments: ObservedSegments, groups: list[IntArray], limits: GroupLimits
 ) -> list[IntArray]:
     """Join pairs of groups that fit one line, the closest fit first, until no pair does."""
-    limits = (max_angle_rad, tolerance_m, reach_m)
     alive = dict(enumerate(groups))
     offers: list[tuple[float, int, int]] = []
 
     def offer(one: int, other: int) -> None:
-        worst_m = _joint_deviation_m(segments, alive[one], alive[other], *limits)
+        worst_m = _joint_deviation_m(segments, alive[one], alive[other], limits)
         if worst_m is not None:
             heapq.heappush(offers, (worst_m, one, other))
 
-    beside = _find_neighbours(segments, groups, max_angle_rad, reach_m)
+    beside = _find_neighbours(segments, groups, limits)
     for one in range(len(groups)):
         for other in sorted(number for number in beside[one] if number > one):
             offer(one, other)
@@ -154,19 +156,14 @@ def _join(
 
 
 def _joint_deviation_m(
-    segments: ObservedSegments,
-    one: IntArray,
-    other: IntArray,
-    max_angle_rad: float,
-    tolerance_m: float,
-    reach_m: float,
+    segments: ObservedSegments, one: IntArray, other: IntArray, limits: GroupLimits
 ) -> float | None:
     """Return the largest distance of two groups' ends from their line; None if they fit none."""
     members = np.sort(np.concatenate([one, other]))
     line = fit_segments_line(segments, members)
-    if not _fits(line, segments, members, max_angle_rad, tolerance_m).all():
+    if not _fits(line, segments, members, limits).all():
         return None
-    if _gap_m(line, segments, one, other) > reach_m:
+    if _gap_m(line, segments, one, other) > limits.reach_m:
         return None
     return end_deviation_m(line, segments, members).max()
 
@@ -179,10 +176,7 @@ def _gap_m(line: Line, segments: ObservedSegments, one: IntArray, other: IntArra
 
 
 def _find_neighbours(
-    segments: ObservedSegments,
-    groups: list[IntArray],
-    max_angle_rad: float,
-    reach_m: float,
+    segments: ObservedSegments, groups: list[IntArray], limits: GroupLimits
 ) -> dict[int, set[int]]:
     """Return for each group those that may share a line with it.
 
@@ -197,9 +191,9 @@ def _find_neighbours(
         starts.append(line.at(low_m.min()))
         ends.append(line.at(high_m.max()))
     strings = _linestrings(np.array(starts), np.array(ends))
-    near = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=reach_m)
+    near = shapely.STRtree(strings).query(strings, predicate="dwithin", distance=limits.reach_m)
     cosine = np.einsum("ij,ij->i", normals[near[0]], normals[near[1]])
-    pairs = near.T[(cosine >= np.cos(2 * max_angle_rad)) & (near[0] < near[1])]
+    pairs = near.T[(cosine >= np.cos(2 * limits.max_angle_rad)) & (near[0] < near[1])]
     beside: dict[int, set[int]] = {number: set() for number in range(len(groups))}
     for one, other in pairs.tolist():
         beside[one].add(other)

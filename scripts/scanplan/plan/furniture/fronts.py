@@ -11,6 +11,7 @@ stays, and labels decide (`plan.model.things`). Leaves of open doors are taken o
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import shapely
 from shapely.geometry.base import BaseGeometry
@@ -21,8 +22,28 @@ from scanplan.plan.furniture.leaves import Leaf, find_leaves, find_traces
 from scanplan.plan.furniture.pocket import Pocket
 from scanplan.plan.furniture.pockets import find_pockets
 from scanplan.plan.model import things
-from scanplan.plan.plan_wall import PlanWall, list_faces
+from scanplan.plan.plan_wall import PlanWall, list_faces, usual_thickness_m
 from scanplan.rays import free_space
+
+
+@dataclass(frozen=True)
+class FrontLimits:
+    """How large doors, walls and furniture are at most.
+
+    Attributes
+    ----------
+    max_door_m : float
+        Width of a door.
+    max_thickness_m, max_depth_m : float
+        Of a wall, and of furniture from its front to its back.
+    ghost_distance_m : float
+        As far off the same surface may be shown once more, of a scan placed badly.
+    """
+
+    max_door_m: float
+    max_thickness_m: float
+    max_depth_m: float
+    ghost_distance_m: float
 
 
 def drop_fronts(
@@ -30,12 +51,7 @@ def drop_fronts(
     floor: BaseGeometry,
     seen: BaseGeometry,
     assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
-    measure_thickness_m: Callable[[Sequence[PlanWall]], float],
-    *,
-    max_door_m: float,
-    max_thickness_m: float,
-    max_depth_m: float,
-    ghost_distance_m: float,
+    limits: FrontLimits,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
     """Return walls without fronts, the ground of furniture, and leaves of doors.
 
@@ -49,29 +65,23 @@ def drop_fronts(
         pocket may be a sliver through a door: it is none if they saw most of it.
     assemble : callable
         Makes walls of faces.
-    measure_thickness_m : callable
-        Says how thick walls usually are.
-    max_door_m : float
-        How wide a door is at most.
-    max_thickness_m, max_depth_m : float
-        Of a wall, and of furniture from its front to its back.
-    ghost_distance_m : float
-        As far off the same surface may be shown once more, of a scan placed badly.
+    limits : FrontLimits
     """
-    most = {"max_thickness_m": max_thickness_m, "max_depth_m": max_depth_m}
-    leaves = find_leaves(walls, unpaired_m=measure_thickness_m(walls), max_width_m=max_door_m)
+    most = {"max_thickness_m": limits.max_thickness_m, "max_depth_m": limits.max_depth_m}
+    unpaired_m = usual_thickness_m(walls)
+    leaves = find_leaves(walls, unpaired_m=unpaired_m, max_width_m=limits.max_door_m)
     if leaves:
         faces = list_faces(walls)
         for leaf in leaves:
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
-        traces = find_traces(leaves, faces, ghost_distance_m=ghost_distance_m)
+        traces = find_traces(leaves, faces, ghost_distance_m=limits.ghost_distance_m)
         are_traces = set(map(id, traces))
         walls = assemble([face for face in faces if id(face) not in are_traces])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:
         free = free_space.union_on_grid([floor, *grounds])
-        pockets = find_pockets(walls, free, unpaired_m=measure_thickness_m(walls), **most)
+        pockets = find_pockets(walls, free, unpaired_m=usual_thickness_m(walls), **most)
         seen_m2 = shapely.area(overlays.intersect_areas([of.ground for of in pockets], seen))
         return [
             pocket

@@ -1,8 +1,7 @@
 """The surfaces of a plan by the model: walls with what their lines' labels show, and leaves."""
 
-import functools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +10,7 @@ from scanplan.plan.model import glass_views, line_ends, line_labels, things, wal
 from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.surface_counts import COLUMN_M
 from scanplan.plan.model.surface_features import Features, Surroundings
+from scanplan.plan.model.wall_labels import LabelEvidence, label_wall
 from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
@@ -39,13 +39,7 @@ class LabelledSurfaces:
 
 
 def label_surfaces(
-    walls: Sequence[PlanWall],
-    rays: RaySet,
-    track_m: FloatArray,
-    *,
-    max_opening_m: float,
-    max_door_m: float,
-    designed: DesignedWalls | None = None,
+    walls: Sequence[PlanWall], evidence: LabelEvidence, *, max_door_m: float
 ) -> LabelledSurfaces:
     """Label walls along their lines, and tell walls from leaves, furniture and what is outside.
 
@@ -53,26 +47,14 @@ def label_surfaces(
     ----------
     walls : sequence of plan_wall.PlanWall
         Faces in pairs; what is open of them is found anew.
-    rays : ray_set.RaySet
-    track_m : (k, 2) float64
-        Where the sensor was, one place after the other.
-    max_opening_m : float
-        What is open for longer parts a wall in two.
+    evidence : LabelEvidence
     max_door_m : float
         Walls go on for a door as wide to the next one.
-    designed : DesignedWalls, optional
-        What makes labels, and walls, likelier.
     """
-    label = functools.partial(
-        wall_labels.label_wall,
-        rays=rays,
-        track_m=track_m,
-        max_opening_m=max_opening_m,
-        designed=designed,
-    )
-    parts = [found for wall in walls for found in label(wall)]
-    found = observe_surfaces([part for part, _ in parts], rays)
-    p = things.weigh_things(found, _weigh_designed([part for part, _ in parts], designed))
+    parts = [found for wall in walls for found in label_wall(wall, evidence)]
+    found = observe_surfaces([part for part, _ in parts], evidence.rays)
+    designed = _weigh_designed([part for part, _ in parts], evidence.designed)
+    p = things.weigh_things(found, designed)
     kinds = things.choose_kinds(p)
     weighed = list(zip(parts, kinds, p[:, things.WALL].tolist(), strict=True))
     kept = [
@@ -85,7 +67,7 @@ def label_surfaces(
         for (part, _), kind, p_wall in weighed
         if kind != things.WALL and p_wall >= line_labels.NEARLY
     ]
-    kept = list(_label_among(kept, label, max_door_m))
+    kept = list(_label_among(kept, evidence, max_door_m))
     return LabelledSurfaces(
         walls=[wall for wall, _ in kept],
         # that nothing was seen above what was seen from one side alone shows no end
@@ -97,7 +79,7 @@ def label_surfaces(
 
 def _label_among(
     parts: Sequence[tuple[PlanWall, float]],
-    label: Callable[..., Iterator[tuple[PlanWall, float]]],
+    evidence: LabelEvidence,
     max_door_m: float,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield walls and their tops, those labelled anew that others are ahead of or cross."""
@@ -107,7 +89,7 @@ def _label_among(
     for (wall, top_m), whole, crossed_m in zip(parts, longer, crossed, strict=True):
         is_open = len(crossed_m) > 1 and wall.openings
         if math.isnan(top_m) and (whole.length_m > wall.length_m or is_open):
-            yield from label(wall, longer=whole, crossed_m=crossed_m)
+            yield from label_wall(wall, evidence, longer=whole, crossed_m=crossed_m)
         else:
             yield wall, top_m
 

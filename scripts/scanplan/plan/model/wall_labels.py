@@ -1,7 +1,7 @@
 """Walls as the labels of their lines have them: openings, parts that end low, ends."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -31,15 +31,33 @@ def count_wall(wall: PlanWall, rays: RaySet) -> SurfaceCounts:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class LabelEvidence:
+    """What walls are labelled by.
+
+    Attributes
+    ----------
+    rays : ray_set.RaySet
+    track_m : (k, 2) float64
+        Where the sensor was, one place after the other.
+    max_opening_m : float
+        What is open for longer parts a wall in two.
+    designed : DesignedWalls, optional
+        What makes labels, and walls, likelier.
+    """
+
+    rays: RaySet
+    track_m: FloatArray
+    max_opening_m: float
+    designed: DesignedWalls | None = None
+
+
 def label_wall(
     wall: PlanWall,
-    rays: RaySet,
-    track_m: FloatArray,
+    evidence: LabelEvidence,
     *,
-    max_opening_m: float,
     longer: PlanWall | None = None,
     crossed_m: FloatArray = line_labels.NOWHERE_M,
-    designed: DesignedWalls | None = None,
 ) -> Iterator[tuple[PlanWall, float]]:
     """Yield the parts of a wall, and how high each ends (NaN: at the ceiling, or not known).
 
@@ -47,20 +65,15 @@ def label_wall(
     ----------
     wall : plan_wall.PlanWall
         Its openings are found anew.
-    rays : ray_set.RaySet
-    track_m : (k, 2) float64
-        Where the sensor was, one place after the other.
-    max_opening_m : float
-        What is open for longer parts a wall in two.
+    evidence : LabelEvidence
     longer : plan_wall.PlanWall, optional
         The same as far as it may go on, see `line_ends.lengthen_walls`.
     crossed_m : (n, 2) float64, optional
         From where to where other walls cross it: what is open from one to another parts it, too.
-    designed : DesignedWalls, optional
-        What makes labels likelier.
     """
+    rays, designed = evidence.rays, evidence.designed
     whole = longer or wall
-    counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, track_m)
+    counts = surface_counts.add_passages(count_wall(whole, rays), wall.line, rays, evidence.track_m)
     goes_on = (whole.low_m < wall.low_m, whole.high_m > wall.high_m)
     stretches = line_labels.label_line(
         counts,
@@ -71,7 +84,7 @@ def label_wall(
     )
     stretches[-1] = replace(stretches[-1], high_m=whole.high_m)
     stretches = line_ends.end_where_seen(stretches, wall.low_m, wall.high_m)
-    for run in _part_runs(stretches, max_opening_m, crossed_m):
+    for run in _part_runs(stretches, evidence.max_opening_m, crossed_m):
         part = _clip_wall(wall, run[0].low_m, run[-1].high_m)
         if part.members and part.length_m >= END_M:
             top_m = run[0].lintel_m if run[0].kind == "low" else np.nan

@@ -15,6 +15,25 @@ CLOSED_SHARE = 0.9
 _BESIDE_WALL_M = np.array([0.15, 0.3, 0.5])  # what stands at a wall may hide the nearest floor
 
 
+@dataclass(frozen=True)
+class RoomSettings:
+    """What a room is.
+
+    Attributes
+    ----------
+    min_area_m2 : float, > 0
+    min_walled : float, 0 to 1
+        A part of the floor that no sensor was in is a room only if so much of its outline runs
+        along walls and openings,
+    min_width_m : float
+        and if it is wider than this somewhere: a wall may be as thick.
+    """
+
+    min_area_m2: float
+    min_walled: float
+    min_width_m: float
+
+
 @dataclass(frozen=True, eq=False)
 class Room:
     """A room of the plan.

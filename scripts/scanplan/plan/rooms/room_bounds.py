@@ -3,7 +3,7 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.geometry import intersections, narrow_places, overlays
 from scanplan.geometry.lines import Line
 from scanplan.plan import wall_ground
-from scanplan.plan.openings import GAP, OPEN, Opening
+from scanplan.plan.openings import GAP, OPEN, Opening, OpeningSettings
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.rays import free_space
@@ -84,18 +84,40 @@ def _cut_known(pane: PlanWall, known: Sequence[PlanWall], unpaired_m: float) -> 
     return [replace(pane, low_m=float(m[0]), high_m=float(m[-1])) for m in spans_m if len(m)]
 
 
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """Floor that rooms may be parted of.
+
+    Attributes
+    ----------
+    ground : shapely geometry
+        That was seen free, and what furniture stands on.
+    planar : bool
+        Whether all scans lie in one plane.
+    hidden : shapely geometry, optional
+        What of it furniture stands on: it was not seen.
+    """
+
+    ground: BaseGeometry
+    planar: bool = False
+    hidden: BaseGeometry | None = None
+
+    def measure_seen_m(self, line_m: FloatArray) -> float:
+        """Return how much of a line (2, 2) over floor furniture does not hide."""
+        across = LineString(line_m)
+        if self.hidden is None:
+            return across.length
+        return overlays.subtract_lines(across, self.hidden).length
+
+
 def find_partings(
-    bounds: Sequence[PlanWall],
-    floor: BaseGeometry,
+    bounds: wall_ground.Bounds,
+    floor: Floor,
     track_m: FloatArray,
+    opening: OpeningSettings,
     *,
-    max_width_m: float,
-    max_door_m: float,
     min_area_m2: float,
-    unpaired_m: float,
-    planar: bool = False,
     ways_m: Sequence[FloatArray] = (),
-    hidden: BaseGeometry | None = None,
 ) -> list[PlanWall]:
     """Return where free floor is narrow between walls: thin walls without faces, all an opening.
 
@@ -105,63 +127,50 @@ def find_partings(
 
     Parameters
     ----------
-    bounds : list of plan_wall.PlanWall
+    bounds : wall_ground.Bounds
         What parts the floor already.
-    floor : shapely geometry
-        That was seen free.
+    floor : Floor
     track_m : (n, 2) float64
         Where sensors were.
-    max_width_m : float
-        Of an opening: what is narrower than the floor on both sides, and no wider, parts it.
-    max_door_m : float
-        Of a door, which gaps in the line of a wall are measured by.
+    opening : OpeningSettings
+        What is narrower than the floor on both sides, and no wider than an opening, parts it; gaps
+        in the line of a wall are measured by doors.
     min_area_m2 : float
         Of a room; less is not parted off.
-    unpaired_m : float
-        As in `find_glass_walls`.
-    planar : bool
-        Whether all scans lie in one plane.
     ways_m : sequence of (2, 2) float64
         Doors, from jamb to jamb: those that stand in no wall part floor, too.
-    hidden : shapely geometry, optional
-        What of the floor furniture stands on: it was not seen.
     """
-    strips = wall_ground.wall_strips(bounds, unpaired_m)
-    tree = shapely.STRtree(strips)
+    strips, max_door_m = bounds.strips, opening.max_door_m
     known = overlays.buffer_shapes(overlays.unite_areas(strips), END_M)
     doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
     # no narrower than the cells that narrow places are looked for in
-    ways = wall_ground.wall_strips(doors, unpaired_m)
+    ways = wall_ground.wall_strips(doors, bounds.unpaired_m)
     grown = [overlays.buffer_shapes(way, CELL_M, join_style="mitre") for way in ways]
     solid = free_space.union_on_grid([*strips, *grown])
     # what is as narrow as a chair's leg casts a shadow, which is no place to stop at
-    whole = free_space.close_shadows(floor, END_M) if planar else floor
+    ground = floor.ground
+    whole = free_space.close_shadows(ground, END_M) if floor.planar else ground
     free = free_space.difference_on_grid(whole, solid)
     partings = list(doors)
-    gaps_m = _find_line_gaps(bounds, tree, free, max_door_m, unpaired_m, hidden)
+    gaps_m = _find_line_gaps(bounds, floor, free, max_door_m)
     # shorter ones may be sides of what stands in a room
-    is_long = [planar and wall.length_m > 2 * max_door_m for wall in bounds]
+    is_long = [floor.planar and wall.length_m > 2 * max_door_m for wall in bounds.walls]
     walls = overlays.unite_areas(list(itertools.compress(strips, is_long)))
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
             *(part, track_m, gaps_m, walls),
-            max_width_m=max_width_m,
+            max_width_m=opening.max_opening_m,
             min_area_m2=min_area_m2,
             cell_m=CELL_M,
         ):
-            is_hidden = 2 * _seen_m(ends_m, hidden) < math.hypot(*(ends_m[1] - ends_m[0]))
+            is_hidden = 2 * floor.measure_seen_m(ends_m) < math.hypot(*(ends_m[1] - ends_m[0]))
             kind = wall_ground.UNSEEN if is_hidden else GAP
-            partings.append(_make_parting(_snap(ends_m, bounds), kind))
+            partings.append(_make_parting(_snap(ends_m, bounds.walls), kind))
     return partings
 
 
 def _find_line_gaps(
-    walls: Sequence[PlanWall],
-    tree: shapely.STRtree,
-    free: BaseGeometry,
-    max_door_m: float,
-    unpaired_m: float,
-    hidden: BaseGeometry | None,
+    bounds: wall_ground.Bounds, floor: Floor, free: BaseGeometry, max_door_m: float
 ) -> list[FloatArray]:
     """Return lines (2, 2) over free floor, from where a wall ends to where one goes on in its line.
 
@@ -169,14 +178,14 @@ def _find_line_gaps(
     doors. Also to a wall across, where nothing meets the wall's end, the gap is no wider than two
     doors, and the wall as long from there to its next opening: beside a door furniture hides what
     goes on, so that no more than a door of it was seen free.
-    What meets another wall at its end is a corner that stands into one room. `tree` is that of the
-    walls' strips.
+    What meets another wall at its end is a corner that stands into one room.
     """
+    walls, tree = bounds.walls, shapely.STRtree(bounds.strips)
     gaps_m: list[FloatArray] = []
     for wall in [wall for wall in walls if wall.bend is None]:
         reach_m = max(wall.length_m, 2 * max_door_m) if wall.right else wall.length_m
         for end_m, way_m in ((wall.low_m, -reach_m), (wall.high_m, reach_m)):
-            gap_m = _find_free_line(wall, end_m, way_m, free, unpaired_m)
+            gap_m = _find_free_line(wall, end_m, way_m, free, bounds.unpaired_m)
             if gap_m is None:
                 continue
             near = tree.query(shapely.Point(gap_m[1]), predicate="dwithin", distance=CORNER_M)
@@ -189,7 +198,7 @@ def _find_line_gaps(
             is_free = len(tree.query(end, predicate="dwithin", distance=around_m)) == 1
             most_m = min(2 * max_door_m, _solid_m(wall, end_m))
             is_crossed = any(intersections.run_across(wall.line, other.line) for other in beyond)
-            seen_m = _seen_m(gap_m, hidden)
+            seen_m = floor.measure_seen_m(gap_m)
             is_narrow = width_m <= most_m and seen_m <= max_door_m + CORNER_M
             ends_at_wall = is_free and is_crossed and is_narrow
             if goes_on or ends_at_wall:
@@ -215,12 +224,6 @@ def _find_free_line(
     ends_m = shapely.get_coordinates(first)[[0, -1]]
     off_m = np.hypot(*(ends_m - ray_m[0]).T)
     return ends_m[np.argsort(off_m, kind="stable")]
-
-
-def _seen_m(gap_m: FloatArray, hidden: BaseGeometry | None) -> float:
-    """Return how much of a line (2, 2) over floor furniture does not hide."""
-    across = LineString(gap_m)
-    return across.length if hidden is None else overlays.subtract_lines(across, hidden).length
 
 
 def _solid_m(wall: PlanWall, end_m: float) -> float:

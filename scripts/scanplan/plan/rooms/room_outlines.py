@@ -11,8 +11,9 @@ from scanplan.geometry import bare_parts, overlays
 from scanplan.geometry.polygons import largest_first
 from scanplan.plan import wall_ground
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.rooms.room import CLOSED_SHARE, Room
+from scanplan.plan.rooms.room import CLOSED_SHARE, Room, RoomSettings
 from scanplan.plan.tolerances import CORNER_M, END_M
+from scanplan.plan.wall_ground import Bounds
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.stage import workers
@@ -24,14 +25,11 @@ _LEAST_AGREEMENT = 0.75  # of cells and floor, intersection over union: else lin
 
 
 def find_rooms(
-    walls: Sequence[PlanWall],
+    bounds: Bounds,
     views: Sequence[BaseGeometry],
     track_m: FloatArray,
+    settings: RoomSettings,
     *,
-    min_area_m2: float,
-    min_walled: float,
-    min_width_m: float,
-    unpaired_m: float,
     floor: BaseGeometry | None = None,
     threads: int = 1,
 ) -> list[Room]:
@@ -43,19 +41,12 @@ def find_rooms(
 
     Parameters
     ----------
-    walls : sequence of plan_wall.PlanWall
+    bounds : wall_ground.Bounds
     views : sequence of shapely geometry
         What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64
         Where sensors were.
-    min_area_m2 : float
-    min_walled : float, 0 to 1
-        A part that no sensor was in is a room only if so much of its outline runs along walls and
-        openings,
-    min_width_m : float
-        and if it is wider than this somewhere: a wall may be as thick.
-    unpaired_m : float
-        Thickness assumed of a wall of which one side is known.
+    settings : RoomSettings
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the views, where it is known already.
     threads : int
@@ -66,22 +57,20 @@ def find_rooms(
     list of Room
         The largest first; they do not overlap.
     """
-    strips = wall_ground.wall_strips(walls, unpaired_m)
-    solid = free_space.union_on_grid(strips)
     whole = free_space.union_on_grid(views) if floor is None else floor
-    seen = free_space.difference_on_grid(whole, solid)
+    seen = free_space.difference_on_grid(whole, bounds.solid)
     track = np.asarray(shapely.points(track_m), object)
     way = bare_parts.draw_way(track_m, END_M)
-    facing = wall_ground.ground_before(walls, unpaired_m)
+    facing = wall_ground.ground_before(bounds.walls, bounds.unpaired_m)
     found: list[tuple[Polygon, float, bool]] = []
-    taken: BaseGeometry = solid
-    for part in _large_parts(seen, min_area_m2):
-        drawn, outline = _draw_room(part, track, walls, strips, solid, taken, unpaired_m)
+    taken: BaseGeometry = bounds.solid
+    for part in _large_parts(seen, settings.min_area_m2):
+        drawn, outline = _draw_room(part, track, bounds, taken)
         polygons = [] if drawn is None else [drawn]
         if drawn is not None and drawn.intersects(way):
             polygons = bare_parts.cut_bare_parts(
                 *(drawn, facing, way),
-                max_walled=1 - min_walled,
+                max_walled=1 - settings.min_walled,
                 beside_m=2 * CORNER_M,
                 step_m=END_M,
             )
@@ -89,9 +78,9 @@ def find_rooms(
             walled = bare_parts.walled_share(polygon.exterior, outline)
             shapely.prepare(polygon)
             is_entered = bool(shapely.contains(polygon, track).any())
-            is_wide = not overlays.buffer_shapes(polygon, -min_width_m / 2).is_empty
-            is_room = is_entered or (walled >= min_walled and is_wide)
-            if is_room and polygon.area >= min_area_m2:
+            is_wide = not overlays.buffer_shapes(polygon, -settings.min_width_m / 2).is_empty
+            is_room = is_entered or (walled >= settings.min_walled and is_wide)
+            if is_room and polygon.area >= settings.min_area_m2:
                 found.append((polygon, walled, is_entered))
                 taken = free_space.union_on_grid([taken, polygon])
     all_views = np.array(views, object)
@@ -127,23 +116,19 @@ def _largest(geometry: BaseGeometry) -> Polygon | None:
 
 
 def _draw_room(
-    part: Polygon,
-    track: Array,
-    walls: Sequence[PlanWall],
-    strips: Sequence[Polygon],
-    solid: BaseGeometry,
-    taken: BaseGeometry,
-    unpaired_m: float,
+    part: Polygon, track: Array, bounds: Bounds, taken: BaseGeometry
 ) -> tuple[Polygon | None, BaseGeometry]:
     """Return the polygon of a part of the floor, and the ground along its walls.
 
     It is drawn by its walls where that leaves out no place that sensors were at.
     """
-    rows = [row for row, strip in enumerate(strips) if strip.distance(part) <= 2 * END_M]
+    rows = [row for row, strip in enumerate(bounds.strips) if strip.distance(part) <= 2 * END_M]
+    near = Bounds([bounds.walls[row] for row in rows], bounds.unpaired_m)
     outline: BaseGeometry = MultiPolygon()
     if rows:
-        outline = overlays.buffer_shapes(overlays.unite_areas([strips[row] for row in rows]), END_M)
-    drawn = _fill_cells(part, [walls[row] for row in rows], solid, outline, unpaired_m)
+        strips = [bounds.strips[row] for row in rows]
+        outline = overlays.buffer_shapes(overlays.unite_areas(strips), END_M)
+    drawn = _fill_cells(part, near, bounds.solid, outline)
     polygon = _largest(free_space.difference_on_grid(drawn, taken))
     shapely.prepare(part)
     visits = track[shapely.contains(part, track)]
@@ -155,11 +140,7 @@ def _draw_room(
 
 
 def _fill_cells(
-    part: Polygon,
-    walls: Sequence[PlanWall],
-    solid: BaseGeometry,
-    outline: BaseGeometry,
-    unpaired_m: float,
+    part: Polygon, near: Bounds, solid: BaseGeometry, outline: BaseGeometry
 ) -> BaseGeometry:
     """Return the cells between the lines of walls that were seen for the greater part.
 
@@ -167,7 +148,7 @@ def _fill_cells(
     was seen well enough at a quarter: what hides the rest is in the room.
     """
     rough = overlays.simplify_shapes(part, CELL_M)
-    cells = _cells(rough, walls, unpaired_m)
+    cells = _cells(rough, near)
     if len(cells) == 0:
         return rough
     shapely.prepare(rough)
@@ -185,9 +166,9 @@ def _fill_cells(
     return drawn if agreement >= _LEAST_AGREEMENT or is_closed else rough
 
 
-def _cells(part: BaseGeometry, walls: Sequence[PlanWall], unpaired_m: float) -> Array:
+def _cells(part: BaseGeometry, near: Bounds) -> Array:
     """Return the cells (n,) that the lines of walls' faces and ends make around a part."""
-    lines = [line for wall in walls for line in _bounding_lines(wall, part, unpaired_m)]
+    lines = [line for of in near.walls for line in _bounding_lines(of, part, near.unpaired_m)]
     if len(lines) < 3:
         return np.empty(0, object)
     frame = shapely.box(*overlays.buffer_shapes(part, _MARGIN_M).bounds)
