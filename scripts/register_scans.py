@@ -70,16 +70,15 @@ def register_scans(
         if chunks:
             found = chunk_files.read_chunks(chunks, poses, thinned, reading)
         else:
-            found = registered_candidates.register_recorded(
-                recordings, poses, raw, thinned, run, reading=reading, settings=limits, moved=moved
-            )
+            recorded = registered_candidates.RecordedCandidates(recordings, reading, poses, moved)
+            caches = mapping.CandidateCaches(raw, thinned)
+            found = registered_candidates.register_recorded(recorded, caches, run, limits)
         survey = found.survey
         odometry = None
         if moved is not None and not survey.is_odometry:
             odometry = registered_candidates.read_odometry(moved, t_ns)
-        placed = mending.place_candidates(
-            survey, t_ns, found.results, found.edges, thinned, run, limits, odometry
-        )
+        registered_map = mapping.SequentialMap(survey, t_ns, found.results, found.edges, thinned)
+        placed = mending.place_candidates(registered_map, run, limits, odometry)
         verdicts, constraints = placed.results, placed.optimised
         results.check_any_kept(verdicts, found.n_dropped, recordings[0])
         gate_shares.check_any_survives(

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from scanplan.project import provenance
-from scanplan.registration import results
+from scanplan.registration import mapping, results
 from scanplan.registration.candidates import chunk_files, registered_candidates
 from scanplan.stage import log, workers
 from scanplan.store import lineage, scan_cache
@@ -53,15 +53,11 @@ def register_scans_chunk(
         workers.open_pool(threads) as run,
     ):
         found = registered_candidates.register_recorded(
-            recordings,
-            poses,
-            raw,
-            thinned,
+            registered_candidates.RecordedCandidates(recordings, reading, poses, moved),
+            mapping.CandidateCaches(raw, thinned),
             run,
-            reading=reading,
-            settings=registered_candidates.read_settings(poses, settings),
-            moved=moved,
-            chunk=chunk,
+            registered_candidates.read_settings(poses, settings),
+            chunk,
         )
         chunk_files.write_chunk(files, found, thinned)
     summary = results.summarise_registration(found.results, found.n_dropped)

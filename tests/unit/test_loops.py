@@ -119,7 +119,11 @@ def align(pairs, places_m, most, fails=()):
         mock.patch.object(loops.constraints, "neighbour_reach_m", lambda _: 0.0),
     ):
         return loops.align_pairs(
-            clouds, rows, np.array(rows), poses, pairs, False, None, 0.5, 2, most
+            loops.PlacedClouds(clouds, rows, np.array(rows), poses),
+            pairs,
+            False,
+            None,
+            loops.LoopLimits(min_fitness=0.5, apart=2, most=most),
         )
 
 
@@ -169,10 +173,10 @@ def test_planar_scans_are_paired_with_those_that_show_most_of_the_same(squares, 
         }
         enough = sorted(eligible, key=lambda t: (place[t], -shares[t], t))
         expected += [(source, target) for target in enough[:most]]
-    rest = {"apart": apart, "least": least, "most": most, "rows_at_once": 5}
-    found = loops.choose_shared_views(clouds, pose, np.ones(n, bool), **rest)
-    assert found == sorted(expected)
+    rest = {"apart": apart, "least": least, "most": most}
     no_last = np.arange(n) < n - 1
-    assert loops.choose_shared_views(clouds, pose, no_last, **rest) == [
-        pair for pair in sorted(expected) if pair[0] != n - 1
-    ]
+    with mock.patch.object(loops, "_ROWS_AT_ONCE", 5):
+        found = loops.choose_shared_views(clouds, pose, np.ones(n, bool), **rest)
+        without = loops.choose_shared_views(clouds, pose, no_last, **rest)
+    assert found == sorted(expected)
+    assert without == [pair for pair in sorted(expected) if pair[0] != n - 1]

@@ -82,8 +82,10 @@ def register(drive, folder, threads=1, **changes):
         workers.open_pool(threads) as run,
     ):
         cut = batches.cut_survey(N, settings)
-        judged, edges = mapping.register_candidates(survey, cut, found, raw, thinned, run, settings)
-        return mapping.optimise_map(survey, judged, edges, thinned, run, settings)
+        caches = mapping.CandidateCaches(raw, thinned)
+        judged, edges = mapping.register_candidates(survey, cut, found, caches, run, settings)
+        in_sequence = mapping.SequentialMap(survey, np.arange(N), judged, edges, thinned)
+        return mapping.optimise_map(in_sequence, run, settings)
 
 
 @pytest.fixture(scope="module")

@@ -48,6 +48,10 @@ def thinned(tmp_path):
         yield fill
 
 
+def kept(cache, *, planar):
+    return multiway.KeptScans(np.arange(len(cache)), [], cache, planar)
+
+
 def test_no_pair_is_linked_twice(thinned):
     """Across anchors a scan may have been registered against one far back: here the last one."""
     there_and_back = np.tile(np.eye(4), (20, 1, 1))
@@ -58,7 +62,8 @@ def test_no_pair_is_linked_twice(thinned):
     cache = thinned(20, [[0.2, 0.2, 0]])
 
     def choose(constrained):
-        return multiway.choose_pairs(there_and_back, cache, constrained, near, planar=True)
+        scans = kept(cache, planar=True)
+        return multiway.choose_pairs(scans, there_and_back, constrained, near)
 
     assert choose(in_sequence) == expected
     assert choose(in_sequence | {(19, 0)}) == expected[:-1]
@@ -72,7 +77,7 @@ def test_half_circles_are_linked_by_what_they_show(thinned):
     near = SimpleNamespace(**PLANAR_PAIRS)
     cache = thinned(40, [[2, 1, 0], [4, -1, 0]])
     in_sequence = {(row, row - 1) for row in range(1, 40)}
-    pairs = multiway.choose_pairs(there_and_back, cache, in_sequence, near, planar=True)
+    pairs = multiway.choose_pairs(kept(cache, planar=True), there_and_back, in_sequence, near)
     # seen from x on the way there, and from x + 6 on the way back
     assert pairs == [(39 - x, x - 6) for x in range(19, 5, -1)]
 
@@ -88,12 +93,14 @@ def test_odometry_ties_scans_that_a_localiser_places_otherwise(monkeypatch):
     steps = MotionConstraints(np.array([1]), np.array([0]), step, information)
 
     def place(odometry):
+        graph = dataclasses.replace(settings.graph, kernel_sigmas=1e6)
         return multiway.optimise_poses(
-            *(np.array([3, 8]), priors, priors, [], None, None),
-            planar=True,
-            limits=settings.limits,
-            settings=dataclasses.replace(settings.graph, kernel_sigmas=1e6),
-            odometry=odometry,
+            multiway.KeptScans(np.array([3, 8]), [], None, planar=True),
+            priors,
+            priors,
+            None,
+            dataclasses.replace(settings, graph=graph),
+            odometry,
         )
 
     assert place(None).world_from_cloud[1, 0, 3] == pytest.approx(1.3)
@@ -115,19 +122,19 @@ def test_pairs_of_a_place_are_aligned_in_one_job():
         if (later - earlier) // 30 <= 4
     ]
     cache = SimpleNamespace(part=lambda rows: rows)
-    limits = None
-    settings = SimpleNamespace(loop_min_fitness=0.5, loop_apart=6, loops_per_scan_planar=3)
-    jobs = list(
-        multiway.alignment_jobs(pairs, np.arange(300), poses, cache, True, limits, settings)
-    )
-    assert sorted(pair for job in jobs for pair in job[4]) == pairs
-    assert sum(len(job[1]) for job in jobs) < 1.3 * 300
-    for part, rows, scan_ids, placed, of_job, *_ in jobs:
-        assert part == rows == scan_ids.tolist() == sorted({row for pair in of_job for row in pair})
-        np.testing.assert_array_equal(placed, poses[rows])
-    sources = [{source for source, _ in job[4]} for job in jobs]
+    graph = SimpleNamespace(loop_min_fitness=0.5, loop_apart=6, loops_per_scan_planar=3)
+    settings = SimpleNamespace(limits=None, graph=graph)
+    scans = multiway.KeptScans(np.arange(300), [], cache, planar=True)
+    jobs = list(multiway.alignment_jobs(pairs, scans, poses, settings))
+    assert sorted(pair for job in jobs for pair in job[1]) == pairs
+    assert sum(len(clouds.rows) for clouds, *_ in jobs) < 1.3 * 300
+    for clouds, of_job, *_ in jobs:
+        rows = sorted({row for pair in of_job for row in pair})
+        assert clouds.part == clouds.rows == clouds.scan_ids.tolist() == rows
+        np.testing.assert_array_equal(clouds.world_from_cloud, poses[rows])
+    sources = [{source for source, _ in job[1]} for job in jobs]
     assert len(set.union(*sources)) == sum(map(len, sources))
-    assert {job[-1] for job in jobs} == {3}
+    assert {job[-1].most for job in jobs} == {3}
 
 
 @pytest.mark.parametrize(("planar", "n_pairs"), [(True, 5), (False, 4)])
@@ -140,5 +147,5 @@ def test_more_visits_are_tried_than_are_linked(thinned, planar, n_pairs):
     )
     in_sequence = {(row, row - 1) for row in range(1, 60)}
     cache = thinned(60, [[0.2, 0.2, 0]])
-    pairs = multiway.choose_pairs(ways, cache, in_sequence, limits, planar=planar)
+    pairs = multiway.choose_pairs(kept(cache, planar=planar), ways, in_sequence, limits)
     assert sum(source == 55 for source, _ in pairs) == n_pairs

@@ -22,7 +22,7 @@ def solved(poses, links, information, prior_information, *, planar=True):
     constraints = MotionConstraints(source, target, motions, np.asarray(information))
     prior_information = np.asarray(prior_information)
     solution = pose_graph.solve_pose_graph(
-        poses, constraints, poses, prior_information, planar=planar
+        poses, constraints, pose_graph.KnownPoses(poses, prior_information), planar=planar
     )
     equations = GraphEquations(constraints, poses, prior_information, planar=planar, kernel=5.0)
     hessian, _ = equations.normal_equations(equations.evaluate(poses))

@@ -46,8 +46,7 @@ def test_exact_measurements_give_the_true_poses(planar):
     found = pose_graph.solve_pose_graph(
         true @ twists.twist_to_motion(twist),
         chain(true, extra=[(23, 0)]),
-        true,
-        weak(24),
+        pose_graph.KnownPoses(true, weak(24)),
         planar=planar,
     )
     np.testing.assert_allclose(found.world_from_scan, true, atol=1e-6)
@@ -66,7 +65,7 @@ def test_two_measurements_are_weighed_by_their_information():
     priors = np.array([pose(0, 0, 0), pose(1.1, 0, 0)])
     information = np.array([1e9 * np.eye(6), 25 * np.eye(6)])
     found = pose_graph.solve_pose_graph(
-        priors, links, priors, information, planar=False, kernel=1e6
+        priors, links, pose_graph.KnownPoses(priors, information), planar=False, kernel=1e6
     )
     np.testing.assert_allclose(found.world_from_scan[1], pose(1.02, 0, 0), atol=1e-6)
     np.testing.assert_allclose(found.residual[0], [0.02, 0, 0, 0, 0, 0], atol=1e-6)
@@ -79,7 +78,10 @@ def test_a_direction_without_information_is_the_priors():
     )
     priors = np.array([pose(0, 0, 0), pose(1.3, 0.2, 0)])
     found = pose_graph.solve_pose_graph(
-        priors, links, priors, np.array([1e9 * np.eye(6), np.eye(6)]), planar=False
+        priors,
+        links,
+        pose_graph.KnownPoses(priors, np.array([1e9 * np.eye(6), np.eye(6)])),
+        planar=False,
     )
     np.testing.assert_allclose(found.world_from_scan[1, :2, 3], [1.3, 0.5], atol=1e-5)
 
@@ -93,12 +95,13 @@ def test_a_closed_loop_takes_the_drift_out():
     start = np.array(start)
     information = weak(60, 1e-6)
     information[0] = 1e8 * np.eye(6)
-    open_ended = pose_graph.solve_pose_graph(start, links, true, information, planar=False)
+    known = pose_graph.KnownPoses(true, information)
+    open_ended = pose_graph.solve_pose_graph(start, links, known, planar=False)
     looped = chain(true, noise=0.01, seed=3, extra=[(i + 30, i) for i in range(0, 30, 3)])
     looped.target_from_source[59:] = (
         se3.invert_pose(true[looped.target[59:]]) @ true[looped.source[59:]]
     )
-    closed = pose_graph.solve_pose_graph(start, looped, true, information, planar=False)
+    closed = pose_graph.solve_pose_graph(start, looped, known, planar=False)
 
     def error_m(found):
         return np.linalg.norm((found.world_from_scan - true)[:, :3, 3], axis=1).mean()
@@ -112,7 +115,9 @@ def test_a_false_loop_and_a_jump_of_the_localiser_are_disbelieved():
     links.target_from_source[-1] = pose(0.5, 0.0, 40)
     priors = true.copy()
     priors[10:13] = pose(2.0, 0, 0) @ priors[10:13]
-    found = pose_graph.solve_pose_graph(priors, links, priors, weak(40, 100.0), planar=False)
+    found = pose_graph.solve_pose_graph(
+        priors, links, pose_graph.KnownPoses(priors, weak(40, 100.0)), planar=False
+    )
     assert found.weight[-1] < 0.01 and (found.weight[:-1] > 0.25).all()
     assert (found.prior_weight[10:13] < 0.1).all() and (found.prior_weight[13:] > 0.5).all()
     assert np.linalg.norm((found.world_from_scan - true)[:, :3, 3], axis=1).max() < 0.05
@@ -135,7 +140,9 @@ def test_one_false_constraint_does_not_turn_a_stretch_away_from_all_else(planar)
     links.information[is_false] *= 1e3
     priors = true.copy()
     priors[20:23] = pose(0, 2.0, 0) @ priors[20:23]
-    found = pose_graph.solve_pose_graph(true, links, priors, weak(40, 100.0), planar=planar)
+    found = pose_graph.solve_pose_graph(
+        true, links, pose_graph.KnownPoses(priors, weak(40, 100.0)), planar=planar
+    )
     assert np.linalg.norm((found.world_from_scan - true)[:, :3, 3], axis=1).max() < 0.05
     assert (found.weight[is_false] < 0.05).all() and (found.weight[~is_false] > 0.5).all()
     assert (found.prior_weight[20:23] < 0.05).all() and (found.prior_weight[:20] > 0.5).all()
@@ -150,7 +157,7 @@ def test_the_same_answer_as_open3d():
     information = weak(16, 1e-9)
     information[0] = 1e12 * np.eye(6)
     ours = pose_graph.solve_pose_graph(
-        start, links, start, information, planar=False, kernel=1e6
+        start, links, pose_graph.KnownPoses(start, information), planar=False, kernel=1e6
     ).world_from_scan
     registration = o3d.pipelines.registration
     graph = registration.PoseGraph()
@@ -194,7 +201,9 @@ def test_factors_serve_for_the_steps_after_them(monkeypatch):
 
     def solve():
         calls.clear()
-        found = pose_graph.solve_pose_graph(start, links, true, weak(60), planar=False)
+        found = pose_graph.solve_pose_graph(
+            start, links, pose_graph.KnownPoses(true, weak(60)), planar=False
+        )
         return found, calls.count(factor)
 
     factor = pose_graph.splu

@@ -184,10 +184,10 @@ def _register(given: GivenScans, poses: npt.ArrayLike, threads: int) -> Register
         workers.open_pool(threads) as run,
     ):
         cut = batches.cut_survey(n_scans, limits)
-        verdicts, edges = mapping.register_candidates(
-            survey, cut, given.scans, raw, thinned, run, limits
-        )
-        verdicts, _ = mapping.optimise_map(survey, verdicts, edges, thinned, run, limits)
+        caches = mapping.CandidateCaches(raw, thinned)
+        verdicts, edges = mapping.register_candidates(survey, cut, given.scans, caches, run, limits)
+        in_sequence = mapping.SequentialMap(survey, given.t_ns, verdicts, edges, thinned)
+        verdicts, _ = mapping.optimise_map(in_sequence, run, limits)
     results.check_any_kept(verdicts, sum(scan.n_dropped for scan in given.scans), _ORIGIN)
     columns = results.registration_columns(survey.scan_ids, given.t_ns, verdicts)
     return registered_scans.select_kept_scans(columns, _ORIGIN)

@@ -205,7 +205,6 @@ def make_plan(
 
     Parameters
     ----------
-    chosen : ChosenScans
     track_m : (k, 2) float64
         Where the sensor was, of all registered scans.
     settings : PlanSettings

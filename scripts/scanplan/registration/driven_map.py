@@ -11,7 +11,6 @@ from scanplan.registration import constraints, joins, loops
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.drift import folds, submaps
 from scanplan.registration.drift.odometry import measure_way
-from scanplan.registration.mapping import StepsBetween
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.prepared_clouds import PreparedCloud, PreparedScans
 from scanplan.registration.registration_settings import DriftSettings
@@ -97,45 +96,34 @@ def take_map(
     survey: CandidateScans,
     t_ns: IntArray,
     world_from_sensor: FloatArray,
-    kept: IntArray,
     optimised: OptimisedMap,
     clouds: PreparedScans,
-    odometry: StepsBetween | None,
-    settled: Sequence[int] = (),
+    motions: FloatArray | None,
 ) -> DrivenMap:
     """Return the map of a survey's kept candidates.
 
     Parameters
     ----------
+    survey : batches.CandidateScans
+        Of the kept ones alone.
     t_ns : (n,) int64
-        Stamps of the candidates.
-    world_from_sensor : (k, 4, 4) float64
-        Of the kept ones.
-    kept : (k,) int
-        Their rows.
-    clouds : prepared_clouds.PreparedScans
-        Theirs.
-    odometry : callable, optional
-        See `mapping.optimise_map`.
-    settled : sequence of int
-        See `DrivenMap`.
+    world_from_sensor : (n, 4, 4) float64
+    motions : (n - 1, 4, 4) float64, optional
+        How the sensor moved from each to the next by odometry, see `mapping.optimise_map`.
     """
-    levels = [
-        constraints.level_pose(survey.priors[row], planar=survey.planar) for row in kept.tolist()
-    ]
+    levels = [constraints.level_pose(prior, planar=survey.planar) for prior in survey.priors]
     level_from_sensor = np.array(levels)
     sensor_from_level = se3.invert_pose(level_from_sensor)
     steps = None
-    if odometry is not None:
-        steps = level_from_sensor[:-1] @ odometry(kept) @ sensor_from_level[1:]
+    if motions is not None:
+        steps = level_from_sensor[:-1] @ motions @ sensor_from_level[1:]
     return DrivenMap(
-        scan_ids=survey.scan_ids[kept],
-        t_ns=t_ns[kept],
+        scan_ids=survey.scan_ids,
+        t_ns=t_ns,
         world_from_sensor=world_from_sensor,
         world_from_cloud=world_from_sensor @ sensor_from_level,
-        recorded=survey.priors[kept] @ sensor_from_level,
+        recorded=survey.priors @ sensor_from_level,
         steps=steps,
         optimised=optimised,
         clouds=clouds,
-        settled=settled,
     )

@@ -3,6 +3,7 @@
 import itertools
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from operator import itemgetter
 from typing import Any
@@ -18,7 +19,49 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 RowPair = tuple[int, int]
 """Rows (source, target) of two scans."""
+_ROWS_AT_ONCE = 256  # stations whose views are compared together: bounds the memory
 _STATION_TURN_DEG = 30.0  # a camera that turned this far shows other things
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedClouds:
+    """Some scans where they are thought to be.
+
+    Attributes
+    ----------
+    part : scan_cache.ScanCachePart
+        Their thinned points.
+    rows : sequence of int
+        Their rows among all.
+    scan_ids : (len(rows),) int
+    world_from_cloud : (len(rows), 4, 4) float64
+    """
+
+    part: ScanCachePart
+    rows: Sequence[int]
+    scan_ids: IntArray
+    world_from_cloud: FloatArray
+
+
+@dataclass(frozen=True)
+class LoopLimits:
+    """When two aligned scans are tied.
+
+    Attributes
+    ----------
+    min_fitness : float
+        Pairs that overlap less after alignment get no constraint.
+    apart : int
+        Pairs with no more rows than this between them are of the kind `sequence`, the others of the
+        kind `loop`.
+    most : int
+        Of the loops of a source only so many that align count; the nearest of each visit are tried
+        first.
+    """
+
+    min_fitness: float
+    apart: int
+    most: int
 
 
 def choose_stations(world_from_scan: FloatArray, step_m: float) -> BoolArray:
@@ -112,7 +155,6 @@ def choose_shared_views(
     apart: int,
     least: float,
     most: int,
-    rows_at_once: int = 256,
 ) -> list[RowPair]:
     """Choose loop candidates in the plane: stations and earlier ones that show most of the same.
 
@@ -134,8 +176,6 @@ def choose_shared_views(
     most : int
         A station is paired with this many: of each visit the one with the largest share, then the
         second ones, and so on.
-    rows_at_once : int
-        Stations that are looked at together: bounds the memory.
 
     Returns
     -------
@@ -150,8 +190,8 @@ def choose_shared_views(
     n_needed = least * np.array([len(xyz_m) for xyz_m in of_stations])
     shown = (counts > 0).astype(np.int64).T.tocsc()
     pairs: list[RowPair] = []
-    for begin in range(0, len(stations), rows_at_once):
-        shared = sparse.csr_array(counts[begin : begin + rows_at_once] @ shown)
+    for begin in range(0, len(stations), _ROWS_AT_ONCE):
+        shared = sparse.csr_array(counts[begin : begin + _ROWS_AT_ONCE] @ shown)
         shared.sort_indices()
         bounds = np.asarray(shared.indptr, np.int64).tolist()
         for i in range(len(bounds) - 1):
@@ -229,53 +269,36 @@ def choose_bridges(
 
 
 def align_pairs(
-    part: ScanCachePart,
-    rows: Sequence[int],
-    scan_ids: IntArray,
-    world_from_cloud: FloatArray,
+    clouds: PlacedClouds,
     pairs: Sequence[RowPair],
     planar: bool,
     settings: SequentialSettings,
-    min_fitness: float,
-    apart: int,
-    most: int,
+    limits: LoopLimits,
 ) -> list[PoseConstraint]:
     """Align pairs of scans.
 
     Parameters
     ----------
-    part : scan_cache.ScanCachePart
-        Thinned points of the scans that occur in `pairs`.
-    rows : sequence of int
-        Their rows.
-    scan_ids : (len(rows),) int
-    world_from_cloud : (len(rows), 4, 4) float64
-        Their approximate poses.
+    clouds : PlacedClouds
+        Of the scans that occur in `pairs`.
     pairs : sequence of (source, target)
         Rows.
-    min_fitness : float
-        Pairs that overlap less after alignment get no constraint.
-    apart : int
-        Pairs with no more rows than this between them are of the kind `sequence`, the others of the
-        kind `loop`.
-    most : int
-        Of the loops of a source only so many that align count; the nearest of each visit are tried
-        first.
 
     Returns
     -------
     list of constraints.PoseConstraint
         In the order of the pairs of the kind `sequence`, then of the loops by source and distance.
     """
-    thinned_m = dict(zip(rows, part, strict=True))
-    place_of_row = {row: place for place, row in enumerate(rows)}
+    thinned_m = dict(zip(clouds.rows, clouds.part, strict=True))
+    place_of_row = {row: place for place, row in enumerate(clouds.rows)}
+    world_from_cloud = clouds.world_from_cloud
     reach_m = constraints.neighbour_reach_m(settings)
 
     @cache
     def prepare_scan(row: int) -> PlacedScan:
         cloud = prepared_clouds.prepare_cloud(thinned_m[row], planar=planar, reach_m=reach_m)
         place = place_of_row[row]
-        return PlacedScan(int(scan_ids[place]), cloud, world_from_cloud[place])
+        return PlacedScan(int(clouds.scan_ids[place]), cloud, world_from_cloud[place])
 
     def apart_m(pair: RowPair) -> float:
         source, target = (world_from_cloud[place_of_row[row], :3, 3] for row in pair)
@@ -287,16 +310,17 @@ def align_pairs(
         found = list(of_source)
         targets = np.array([target for _, target in found], np.int64)
         distance_m = np.array([apart_m(pair) for pair in found])
-        ranks = rank_in_visits(targets, distance_m, apart).tolist()
+        ranks = rank_in_visits(targets, distance_m, limits.apart).tolist()
         for target, rank, away_m in zip(targets.tolist(), ranks, distance_m.tolist(), strict=True):
-            keyed.append((source - target > apart, source, rank, away_m, target))
+            keyed.append((source - target > limits.apart, source, rank, away_m, target))
     n_loops: Counter[int] = Counter()
     edges: list[PoseConstraint] = []
     for is_loop, source, _, _, target in sorted(keyed):
-        if is_loop and n_loops[source] == most:
+        if is_loop and n_loops[source] == limits.most:
             continue
         kind = "loop" if is_loop else "sequence"
-        edge = _constrain(prepare_scan(source), prepare_scan(target), kind, settings, min_fitness)
+        pair = (prepare_scan(source), prepare_scan(target))
+        edge = _constrain(*pair, kind, settings, limits.min_fitness)
         if edge is not None:
             edges.append(edge)
             n_loops[source] += is_loop

@@ -5,8 +5,8 @@ sequence; then all retained scans are optimised together.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.drift import drifting_map
 from scanplan.registration.drift.odometry import constrain_placed_scans
 from scanplan.registration.registration_settings import FRAMES, RegistrationSettings
-from scanplan.registration.sequential import ScanResult
+from scanplan.registration.sequential import OTHER_MAP, ScanResult
 from scanplan.stage import log
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -26,12 +26,69 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 StepsBetween = Callable[[IntArray], FloatArray]
 
 
+@dataclass(frozen=True)
+class CandidateCaches:
+    """Where points of candidates are kept.
+
+    Attributes
+    ----------
+    raw : scan_cache.ScanCache
+        Of all that were read.
+    thinned : scan_cache.ScanCache
+        Of the kept ones, thinned.
+    """
+
+    raw: ScanCache
+    thinned: ScanCache
+
+
+@dataclass(frozen=True)
+class SequentialMap:
+    """Candidates as registered one after the other.
+
+    Attributes
+    ----------
+    survey : batches.CandidateScans
+    t_ns : (n,) int64
+        Their stamps.
+    results : sequence of sequential.ScanResult
+        One per candidate.
+    edges : list of constraints.PoseConstraint
+    thinned : scan_cache.ScanCache
+        The thinned points of the kept ones.
+    """
+
+    survey: CandidateScans
+    t_ns: IntArray
+    results: Sequence[ScanResult]
+    edges: list[PoseConstraint]
+    thinned: ScanCache
+
+    @property
+    def kept(self) -> IntArray:
+        """Rows (k,) of the candidates that are kept."""
+        return np.flatnonzero([result.kept for result in self.results])
+
+    def take(self, is_of_map: Sequence[bool], motions: FloatArray) -> Self:
+        """Return those of one map, each moved (n, 4, 4) as its part is; others are not kept."""
+        moved = [
+            replace(
+                result,
+                world_from_sensor=motion @ result.world_from_sensor,
+                **({} if of_map or not result.kept else {"kept": False, "reason": OTHER_MAP}),
+            )
+            for result, of_map, motion in zip(self.results, is_of_map, motions, strict=True)
+        ]
+        survey = replace(self.survey, priors=motions @ self.survey.priors)
+        left = np.flatnonzero(np.asarray(is_of_map, bool)[self.kept])
+        return replace(self, survey=survey, results=moved, thinned=self.thinned.take(left.tolist()))
+
+
 def register_candidates(
     survey: CandidateScans,
     cut: Sequence[tuple[int, int, int]],
     scans: Iterable[Scan],
-    raw: ScanCache,
-    thinned: ScanCache,
+    caches: CandidateCaches,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
 ) -> tuple[list[ScanResult], list[PoseConstraint]]:
@@ -43,7 +100,7 @@ def register_candidates(
         Batches of it, as of `batches.cut_survey`; all of them where frames are compared.
     scans : iterable of clouds.Scan
         The points of the candidates of these batches, in order.
-    raw, thinned : scan_cache.ScanCache
+    caches : CandidateCaches
         Empty; left with the points of these candidates, and with the thinned points of the kept
         ones that belong to the batches.
     run : callable
@@ -58,17 +115,14 @@ def register_candidates(
     """
     limits = settings.limits
     if limits.compare_with == FRAMES:
-        return batches.register_frames(scans, raw, thinned, survey, limits)
-    jobs = batches.batch_jobs(scans, raw, survey, cut, limits)
+        return batches.register_frames(scans, caches.raw, caches.thinned, survey, limits)
+    jobs = batches.batch_jobs(scans, caches.raw, survey, cut, limits)
     n_candidates = cut[-1][2] - cut[0][1] if cut else 0
-    return _register_batches(jobs, n_candidates, thinned, run)
+    return _register_batches(jobs, n_candidates, caches.thinned, run)
 
 
 def optimise_map(
-    survey: CandidateScans,
-    scan_results: Sequence[ScanResult],
-    edges: list[PoseConstraint],
-    thinned: ScanCache,
+    registered: SequentialMap,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
     odometry: StepsBetween | None = None,
@@ -77,10 +131,6 @@ def optimise_map(
 
     Parameters
     ----------
-    edges : list of constraints.PoseConstraint
-        Of all candidates, as registered one after the other.
-    thinned : scan_cache.ScanCache
-        The thinned points of the kept ones.
     run, settings
         As of `register_candidates`.
     odometry : callable, optional
@@ -94,12 +144,13 @@ def optimise_map(
     multiway.OptimisedMap or None
         None where no scan was registered.
     """
-    placed = list(scan_results)
+    placed = list(registered.results)
     is_any_kept = any(result.kept for result in placed)
     if settings.limits.icp_method == sequential.GIVEN_POSES or not is_any_kept:
         return placed, None
-    optimised = _optimise(survey, placed, edges, thinned, run, settings, odometry)
-    return _drop_unconfirmed(survey, placed, optimised, settings.limits.anchor_apart_m)
+    optimised = _optimise(registered, placed, run, settings, odometry)
+    apart_m = settings.limits.anchor_apart_m
+    return _drop_unconfirmed(registered.survey, placed, optimised, apart_m)
 
 
 def find_unconfirmed(
@@ -178,16 +229,14 @@ def _log_progress(scan_results: list[ScanResult], n_candidates: int) -> None:
 
 
 def _optimise(
-    survey: CandidateScans,
+    registered: SequentialMap,
     scan_results: list[ScanResult],
-    edges: list[PoseConstraint],
-    thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
     odometry: StepsBetween | None,
 ) -> multiway.OptimisedMap:
     """Optimise the kept scans together, and write their poses into `scan_results`."""
-    kept = np.flatnonzero([result.kept for result in scan_results])
+    survey, edges, kept = registered.survey, registered.edges, registered.kept
     level_from_sensor = np.array([_level_from_sensor(survey, int(row)) for row in kept])
     sensor_from_level = se3.invert_pose(level_from_sensor)
     world_from_sensor = np.array([scan_results[row].world_from_sensor for row in kept])
@@ -196,11 +245,9 @@ def _optimise(
     if not settings.graph.optimise:
         return multiway.keep_sequential(scan_ids, start, edges)
     given = survey.priors[kept] @ sensor_from_level
-    common = {"planar": survey.planar, "limits": settings.limits, "settings": settings.graph}
+    scans = multiway.KeptScans(scan_ids, edges, registered.thinned, survey.planar)
     if survey.is_odometry:
-        optimised = drifting_map.optimise_drifting_poses(
-            scan_ids, given, edges, thinned, run, **common, drift=settings.drift
-        )
+        optimised = drifting_map.optimise_drifting_poses(scans, given, run, settings)
     else:
         steps = None
         if odometry is not None:
@@ -213,9 +260,7 @@ def _optimise(
                 f"register_scans: odometry ties {len(steps.source):,} of {len(kept):,} retained"
                 " scans to the one before"
             )
-        optimised = multiway.optimise_poses(
-            scan_ids, start, given, edges, thinned, run, **common, odometry=steps
-        )
+        optimised = multiway.optimise_poses(scans, start, given, run, settings, steps)
     poses = optimised.world_from_cloud @ level_from_sensor
     for row, pose, covariance in zip(kept, poses, optimised.covariance, strict=True):
         scan_results[row] = replace(

@@ -8,15 +8,14 @@ import numpy as np
 
 from scanplan.errors import MOST_NAMED, StageError
 from scanplan.registration import contradictions, mapping, parts
-from scanplan.registration.batches import CandidateScans
-from scanplan.registration.constraints import PoseConstraint, neighbour_reach_m
+from scanplan.registration.constraints import neighbour_reach_m
 from scanplan.registration.driven_map import DrivenMap, take_map
+from scanplan.registration.mapping import SequentialMap
 from scanplan.registration.multiway import OptimisedMap
 from scanplan.registration.prepared_clouds import PreparedScans
 from scanplan.registration.registration_settings import RegistrationSettings
-from scanplan.registration.sequential import OTHER_MAP, ScanResult
+from scanplan.registration.sequential import ScanResult
 from scanplan.stage.witnesses import Measured, state_witness
-from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
 
 _LEAST_SCANS = 3  # of a map that is told: a scan or two show next to nothing
@@ -42,40 +41,8 @@ class PlacedCandidates:
     witnesses: Sequence[Measured]
 
 
-@dataclass(frozen=True)
-class _Registered:
-    """Candidates as registered one after the other; see `mapping.optimise_map`."""
-
-    survey: CandidateScans
-    results: Sequence[ScanResult]
-    edges: list[PoseConstraint]
-    thinned: ScanCache
-
-    @property
-    def kept(self) -> IntArray:
-        return np.flatnonzero([result.kept for result in self.results])
-
-    def take(self, is_of_map: Sequence[bool], motions: FloatArray) -> "_Registered":
-        """Return those of one map, each moved (n, 4, 4) as its part is; others are not kept."""
-        moved = [
-            replace(
-                result,
-                world_from_sensor=motion @ result.world_from_sensor,
-                **({} if of_map or not result.kept else {"kept": False, "reason": OTHER_MAP}),
-            )
-            for result, of_map, motion in zip(self.results, is_of_map, motions, strict=True)
-        ]
-        survey = replace(self.survey, priors=motions @ self.survey.priors)
-        left = np.flatnonzero(np.asarray(is_of_map, bool)[self.kept])
-        return replace(self, survey=survey, results=moved, thinned=self.thinned.take(left.tolist()))
-
-
 def place_candidates(
-    survey: CandidateScans,
-    t_ns: IntArray,
-    scan_results: Sequence[ScanResult],
-    edges: list[PoseConstraint],
-    thinned: ScanCache,
+    registered: SequentialMap,
     run: Callable[..., Iterator[Any]],
     settings: RegistrationSettings,
     odometry: mapping.StepsBetween | None = None,
@@ -84,9 +51,7 @@ def place_candidates(
 
     Parameters
     ----------
-    t_ns : (n,) int64
-        Stamps of the candidates.
-    scan_results, edges, thinned, run, settings, odometry
+    registered, run, settings, odometry
         As of `mapping.optimise_map`.
 
     Raises
@@ -94,19 +59,13 @@ def place_candidates(
     StageError
         If a map is asked for that there is not.
     """
-    registered = _Registered(survey, scan_results, edges, thinned)
-
-    def optimise(of_map: _Registered) -> tuple[list[ScanResult], OptimisedMap | None]:
-        return mapping.optimise_map(
-            of_map.survey, of_map.results, of_map.edges, of_map.thinned, run, settings, odometry
-        )
-
-    placed, optimised = optimise(registered)
+    survey, t_ns = registered.survey, registered.t_ns
+    placed, optimised = mapping.optimise_map(registered, run, settings, odometry)
     if optimised is None or survey.is_odometry or not settings.graph.optimise:
         witnesses = () if optimised is None else optimised.witnesses
         _check_part(settings.part, 1)
         return PlacedCandidates(placed, optimised, witnesses)
-    driven = _take_map(registered, t_ns, placed, optimised, settings, odometry)
+    driven = _take_map(registered, placed, optimised, settings, odometry)
     changes = parts.find_changes(driven)
     if not changes:
         _check_part(settings.part, 1)
@@ -118,10 +77,10 @@ def place_candidates(
     # what lies between two parts fits neither: it is of the later one
     part = np.searchsorted(begins[1:], np.arange(len(survey.scan_ids)), side="right")
     of_map = registered.take((tied.group[part] == chosen).tolist(), tied.motion[part])
-    placed, optimised = optimise(of_map)
+    placed, optimised = mapping.optimise_map(of_map, run, settings, odometry)
     if optimised is None:
         return PlacedCandidates(placed, None, ())
-    driven = _take_map(of_map, t_ns, placed, optimised, settings, odometry, begins)
+    driven = _take_map(of_map, placed, optimised, settings, odometry, begins)
     after_s = (t_ns[begins] - t_ns[0]) / 1e9
     told = [
         _measure_mended(tied, chosen, after_s),
@@ -131,8 +90,7 @@ def place_candidates(
 
 
 def _take_map(
-    registered: _Registered,
-    t_ns: IntArray,
+    registered: SequentialMap,
     placed: Sequence[ScanResult],
     optimised: OptimisedMap,
     settings: RegistrationSettings,
@@ -146,15 +104,17 @@ def _take_map(
     begins : (k,) int, optional
         Candidates with which parts begin, which are known to lie right.
     """
-    survey = registered.survey
     kept = np.flatnonzero([result.kept for result in placed])
     clouds = PreparedScans(
-        registered.thinned, survey.planar, neighbour_reach_m(settings.limits)
+        registered.thinned, registered.survey.planar, neighbour_reach_m(settings.limits)
     ).take(np.flatnonzero(np.isin(registered.kept, kept)))
     poses = np.array([placed[row].world_from_sensor for row in kept.tolist()])
     begun = [] if begins is None else begins[begins <= kept[-1]]
     settled = np.searchsorted(kept, begun).tolist()
-    return take_map(survey, t_ns, poses, kept, optimised, clouds, odometry, settled)
+    motions = None if odometry is None else odometry(kept)
+    survey, t_ns = registered.survey.take(kept), registered.t_ns[kept]
+    driven = take_map(survey, t_ns, poses, optimised, clouds, motions)
+    return replace(driven, settled=settled)
 
 
 def _measure_mended(tied: parts.TiedParts, chosen: int, after_s: FloatArray) -> Measured:

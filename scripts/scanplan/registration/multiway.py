@@ -14,7 +14,7 @@ from scanplan.registration import loops, pose_graph
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.loops import RowPair
-from scanplan.registration.registration_settings import PoseGraphSettings, SequentialSettings
+from scanplan.registration.registration_settings import PoseGraphSettings, RegistrationSettings
 from scanplan.stage.witnesses import Measured
 from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FloatArray, IntArray
@@ -67,6 +67,27 @@ class OptimisedMap:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class KeptScans:
+    """Retained scans, as their poses are sought.
+
+    Attributes
+    ----------
+    scan_ids : (n,) int, increasing
+    edges : sequence of constraints.PoseConstraint
+        Between successive scans; those with an end that is not retained are left out.
+    thinned : scan_cache.ScanCache
+        The points that `prepared_clouds.prepare_cloud` takes, one cloud per scan.
+    planar : bool
+        Whether the sensor measures in one plane.
+    """
+
+    scan_ids: IntArray
+    edges: Sequence[PoseConstraint]
+    thinned: ScanCache
+    planar: bool
+
+
 def keep_sequential(
     scan_ids: IntArray, start: FloatArray, edges: Sequence[PoseConstraint]
 ) -> OptimisedMap:
@@ -74,8 +95,10 @@ def keep_sequential(
 
     Parameters
     ----------
-    scan_ids, start, edges
-        As of `optimise_poses`.
+    scan_ids, edges
+        As of `KeptScans`.
+    start : (n, 4, 4) float64
+        Their world_from_cloud.
     """
     row_of_scan = find_rows(scan_ids)
     kept = sorted(edges_between(edges, row_of_scan), key=edge_ends)
@@ -89,57 +112,43 @@ def keep_sequential(
 
 
 def optimise_poses(
-    scan_ids: IntArray,
+    scans: KeptScans,
     start: FloatArray,
     priors: FloatArray,
-    edges: Sequence[PoseConstraint],
-    thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
-    *,
-    planar: bool,
-    limits: SequentialSettings,
-    settings: PoseGraphSettings,
+    settings: RegistrationSettings,
     odometry: MotionConstraints | None = None,
 ) -> OptimisedMap:
     """Find the poses of all retained scans at once.
 
     Parameters
     ----------
-    scan_ids : (n,) int, increasing
-        Of the retained scans.
     start, priors : (n, 4, 4) float64
         Their world_from_cloud as registered one after the other, and by the localiser.
-    edges : sequence of constraints.PoseConstraint
-        Between successive scans; those with an end that is not retained are left out.
-    thinned : scan_cache.ScanCache
-        The points that `prepared_clouds.prepare_cloud` takes, one cloud per retained scan.
     run : callable
         As `workers.open_pool` gives it.
     odometry : graph_equations.MotionConstraints, optional
         Motions between scans that were measured beside the localiser's poses.
     """
-    row_of_scan = find_rows(scan_ids)
-    prior_information = limits.localiser_information(priors)
+    row_of_scan = find_rows(scans.scan_ids)
+    known = pose_graph.KnownPoses(priors, settings.limits.localiser_information(priors))
 
     def solve(
         begin: FloatArray, constraints: Sequence[PoseConstraint], *, is_start: bool = False
     ) -> pose_graph.PoseGraphSolution:
-        motions = edge_motions(constraints, row_of_scan, settings)
+        motions = edge_motions(constraints, row_of_scan, settings.graph)
         return pose_graph.solve_pose_graph(
             begin,
             motions if odometry is None else motions.join(odometry),
-            priors,
-            prior_information,
-            planar=planar,
-            kernel=settings.kernel_sigmas,
+            known,
+            planar=scans.planar,
+            kernel=settings.graph.kernel_sigmas,
             is_start=is_start,
         )
 
-    sequence = edges_between(edges, row_of_scan)
+    sequence = edges_between(scans.edges, row_of_scan)
     poses = solve(start, sequence, is_start=True).world_from_scan
-    loop_edges = align_visits(
-        scan_ids, poses, sequence, thinned, run, planar=planar, limits=limits, settings=settings
-    )
+    loop_edges = align_visits(scans, poses, sequence, run, settings)
     all_edges = sorted([*sequence, *loop_edges], key=edge_ends)
     solution = solve(poses, all_edges)
     return OptimisedMap(
@@ -199,48 +208,40 @@ def edge_motions(
 
 
 def align_visits(
-    scan_ids: IntArray,
+    scans: KeptScans,
     world_from_scan: FloatArray,
     sequence: Sequence[PoseConstraint],
-    thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
-    *,
-    planar: bool,
-    limits: SequentialSettings,
-    settings: PoseGraphSettings,
+    settings: RegistrationSettings,
 ) -> list[PoseConstraint]:
     """Align scans to those of other visits that show the same, and those that lack a predecessor.
 
     Parameters
     ----------
-    scan_ids, thinned, run, planar, limits, settings
+    scans, run, settings
         As of `optimise_poses`.
     world_from_scan : (n, 4, 4) float64
     sequence : sequence of constraints.PoseConstraint
         What the scans are constrained by already.
     """
-    row_of_scan = find_rows(scan_ids)
+    row_of_scan = find_rows(scans.scan_ids)
     constrained = {(row_of_scan[edge.source], row_of_scan[edge.target]) for edge in sequence}
-    pairs = choose_pairs(world_from_scan, thinned, constrained, settings, planar=planar)
-    jobs = alignment_jobs(pairs, scan_ids, world_from_scan, thinned, planar, limits, settings)
+    pairs = choose_pairs(scans, world_from_scan, constrained, settings.graph)
+    jobs = alignment_jobs(pairs, scans, world_from_scan, settings)
     return align_jobs(jobs, run)
 
 
 def choose_pairs(
+    scans: KeptScans,
     world_from_scan: FloatArray,
-    thinned: ScanCache,
     constrained: set[RowPair],
     settings: PoseGraphSettings,
-    *,
-    planar: bool,
 ) -> list[RowPair]:
     """Choose loop-closure candidates: non-consecutive scans with overlapping views.
 
     Parameters
     ----------
     world_from_scan : (n, 4, 4) float64
-    thinned : scan_cache.ScanCache
-        As of `optimise_poses`.
     constrained : set of (source, target)
         Rows that have a constraint already.
 
@@ -251,15 +252,15 @@ def choose_pairs(
         `loops.align_pairs`.
     """
     # a planar scan constrains less than a spatial one, and costs less to align
-    step_m = settings.loop_step_planar_m if planar else settings.loop_step_m
+    step_m = settings.loop_step_planar_m if scans.planar else settings.loop_step_m
     xy_m = world_from_scan[:, :2, 3]
     radius_m = settings.loop_radius_m
     apart = settings.loop_apart
     is_station = loops.choose_stations(world_from_scan, step_m)
     # some show what is behind a wall
-    most = 4 * _count_links(settings, planar)
-    if planar:
-        clouds_m = list(thinned.part(range(len(thinned))))
+    most = 4 * _count_links(settings, scans.planar)
+    if scans.planar:
+        clouds_m = list(scans.thinned.part(range(len(scans.thinned))))
         visits = loops.choose_shared_views(
             clouds_m,
             world_from_scan,
@@ -279,12 +280,9 @@ def choose_pairs(
 
 def alignment_jobs(
     pairs: Sequence[RowPair],
-    scan_ids: IntArray,
+    scans: KeptScans,
     world_from_cloud: FloatArray,
-    thinned: ScanCache,
-    planar: bool,
-    limits: SequentialSettings,
-    settings: PoseGraphSettings,
+    settings: RegistrationSettings,
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the arguments of `loops.align_pairs` of some pairs at a time, place by place.
 
@@ -293,21 +291,17 @@ def alignment_jobs(
     """
     place = np.floor(world_from_cloud[:, :2, 3]).astype(np.int64)  # squares of a metre
     ordered = sorted(pairs, key=lambda pair: (*place[pair[0]], *pair))
-    most = _count_links(settings, planar)
+    limits = loops.LoopLimits(
+        min_fitness=settings.graph.loop_min_fitness,
+        apart=settings.graph.loop_apart,
+        most=_count_links(settings.graph, scans.planar),
+    )
     for of_job in _cut_by_source(ordered, _PAIRS_PER_JOB):
         rows = sorted({row for pair in of_job for row in pair})
-        yield (
-            thinned.part(rows),
-            rows,
-            scan_ids[rows],
-            world_from_cloud[rows],
-            of_job,
-            planar,
-            limits,
-            settings.loop_min_fitness,
-            settings.loop_apart,
-            most,
+        clouds = loops.PlacedClouds(
+            scans.thinned.part(rows), rows, scans.scan_ids[rows], world_from_cloud[rows]
         )
+        yield clouds, of_job, scans.planar, settings.limits, limits
 
 
 def _count_links(settings: PoseGraphSettings, planar: bool) -> int:

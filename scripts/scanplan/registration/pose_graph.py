@@ -17,6 +17,7 @@ from scanplan.types import BoolArray, FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
 INLIER_WEIGHT = 0.25  # a measurement `kernel_sigmas` off counts as much: beyond it is an outlier
+_MOST_ITERATIONS = 50  # of a width of the kernel: a bound on time
 _STEP_DONE = 1e-4  # metres and radians: far below what measurements are off by
 
 
@@ -42,15 +43,28 @@ class PoseGraphSolution:
     covariance: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class KnownPoses:
+    """Poses as measured on their own.
+
+    Attributes
+    ----------
+    world_from_scan : (n, 4, 4) float64
+    information : (n, 6, 6) float64
+        Inverse covariance of each, in the scan's frame.
+    """
+
+    world_from_scan: FloatArray
+    information: FloatArray
+
+
 def solve_pose_graph(
     start: FloatArray,
     constraints: MotionConstraints,
-    priors: FloatArray,
-    prior_information: FloatArray,
+    known: KnownPoses,
     *,
     planar: bool,
     kernel: float = 5.0,
-    max_iterations: int = 50,
     is_start: bool = False,
 ) -> PoseGraphSolution:
     """Find the poses of the least robust squared error (Gauss and Newton, reweighted).
@@ -64,28 +78,23 @@ def solve_pose_graph(
     Parameters
     ----------
     start : (n, 4, 4) float64
-    priors : (n, 4, 4) float64
-        Poses as measured on their own.
-    prior_information : (n, 6, 6) float64
-        Inverse covariance of each, in the scan's frame.
     planar : bool
         Whether only x, y and heading are sought; the scans' frames are then level.
     kernel : float
         A measurement this many standard deviations off counts with a quarter of its weight, one
         twice as far off with a twenty-fifth.
-    max_iterations : int
-        Per width of the kernel.
     is_start : bool
         Whether the poses are only where another solution starts.
     """
     # a millimetre is enough for poses that another solution starts from
     rough_done = 10 * _STEP_DONE
-    equations = GraphEquations(constraints, priors, prior_information, planar=planar, kernel=kernel)
+    priors = known.world_from_scan
+    equations = GraphEquations(constraints, priors, known.information, planar=planar, kernel=kernel)
 
     def minimise(
         begin: FloatArray, step_done: float, is_free: BoolArray | None = None
     ) -> tuple[FloatArray, GraphState]:
-        return _minimise(equations, begin, max_iterations, step_done, is_free)
+        return _minimise(equations, begin, step_done, is_free)
 
     pose = np.array(start, float)
     for width in _WIDE_KERNELS:
@@ -132,7 +141,6 @@ def _has_less_error(
 def _minimise(
     equations: GraphEquations,
     pose: FloatArray,
-    max_iterations: int,
     step_done: float,
     is_free: BoolArray | None = None,
 ) -> tuple[FloatArray, GraphState]:
@@ -143,7 +151,7 @@ def _minimise(
     """
     state = equations.evaluate(pose)
     step = _least_squares_step(equations, state, is_free)
-    for _ in range(max_iterations):
+    for _ in range(_MOST_ITERATIONS):
         moved = equations.move(pose, step)
         moved_state = equations.evaluate(moved)
         is_done = np.abs(step).max() < step_done

@@ -46,11 +46,6 @@ def group_segments(segments: ObservedSegments, limits: GroupLimits) -> list[IntA
     `reach_m`, and are refitted and re-sorted until nothing changes (a mean shift over lines); then
     groups whose members fit one line after all are joined, the best first.
 
-    Parameters
-    ----------
-    segments : lines.ObservedSegments
-    limits : GroupLimits
-
     Returns
     -------
     list of (k,) int64 arrays

@@ -65,7 +65,6 @@ def drop_fronts(
         pocket may be a sliver through a door: it is none if they saw most of it.
     assemble : callable
         Makes walls of faces.
-    limits : FrontLimits
     """
     most = {"max_thickness_m": limits.max_thickness_m, "max_depth_m": limits.max_depth_m}
     unpaired_m = usual_thickness_m(walls)

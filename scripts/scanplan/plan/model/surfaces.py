@@ -47,7 +47,6 @@ def label_surfaces(
     ----------
     walls : sequence of plan_wall.PlanWall
         Faces in pairs; what is open of them is found anew.
-    evidence : LabelEvidence
     max_door_m : float
         Walls go on for a door as wide to the next one.
     """

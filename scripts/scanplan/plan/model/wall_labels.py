@@ -65,7 +65,6 @@ def label_wall(
     ----------
     wall : plan_wall.PlanWall
         Its openings are found anew.
-    evidence : LabelEvidence
     longer : plan_wall.PlanWall, optional
         The same as far as it may go on, see `line_ends.lengthen_walls`.
     crossed_m : (n, 2) float64, optional

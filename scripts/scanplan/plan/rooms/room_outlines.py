@@ -46,7 +46,6 @@ def find_rooms(
         What each scan saw, `free_space.free_polygons`.
     track_m : (n, 2) float64
         Where sensors were.
-    settings : RoomSettings
     floor : shapely geometry, optional
         `free_space.union_on_grid` of the views, where it is known already.
     threads : int

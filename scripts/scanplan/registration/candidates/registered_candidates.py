@@ -24,8 +24,29 @@ from scanplan.registration.registration_settings import (
 from scanplan.registration.sequential import ScanResult
 from scanplan.stage import log, witnesses
 from scanplan.store import pose_columns, schemas, tables
-from scanplan.store.scan_cache import ScanCache
 from scanplan.types import FilePath, FloatArray, IntArray, Settings
+
+
+@dataclass(frozen=True)
+class RecordedCandidates:
+    """Candidates that have not been read.
+
+    Attributes
+    ----------
+    recordings : list of str
+        The dataset's files.
+    reading : dict
+        Keywords of `survey.open_survey`.
+    poses : path-like
+        poses.parquet: the candidates and their poses.
+    moved : path-like, optional
+        motion.parquet: how the sensor moved. Without it scans are not deskewed.
+    """
+
+    recordings: Sequence[str]
+    reading: Settings
+    poses: FilePath
+    moved: FilePath | None = None
 
 
 @dataclass(frozen=True)
@@ -142,58 +163,43 @@ def expect_damaged(n_candidates: int, reading: Settings, begin: int = 0) -> Dama
 
 
 def register_recorded(
-    recordings: Sequence[str],
-    poses: FilePath,
-    raw: ScanCache,
-    thinned: ScanCache,
+    recorded: RecordedCandidates,
+    caches: mapping.CandidateCaches,
     run: Callable[..., Iterator[Any]],
-    *,
-    reading: Settings,
     settings: RegistrationSettings,
-    moved: FilePath | None = None,
     chunk: str | None = None,
 ) -> RegisteredCandidates:
     """Read candidates of a survey and register them one after the other.
 
     Parameters
     ----------
-    recordings : list of str
-        The dataset's files.
-    poses : path-like
-        poses.parquet.
-    raw, thinned : scan_cache.ScanCache
+    caches : mapping.CandidateCaches
         Empty; left with the points of all scans that were read, and with the thinned points of the
         kept ones.
     run : callable
         As `workers.open_pool` gives it.
-    reading : dict
-        Keywords of `survey.open_survey`.
-    moved : path-like, optional
-        motion.parquet: how the sensor moved. Without it scans are not deskewed.
     chunk : str, optional
         Which batches, see `batches.cut_survey`; by default all.
     """
-    motion = None if moved is None else read_motion(moved)
-    with open_survey(recordings, **reading, motion=motion) as opened:
-        survey = read_candidates(poses, planar=opened.planar)
+    motion = None if recorded.moved is None else read_motion(recorded.moved)
+    with open_survey(recorded.recordings, **recorded.reading, motion=motion) as opened:
+        survey = read_candidates(recorded.poses, planar=opened.planar)
         n_candidates = len(survey.scan_ids)
         cut = batches.cut_survey(n_candidates, settings, chunk)
         first, begin, end = (cut[0][0], cut[0][1], cut[-1][2]) if cut else (0, 0, 0)
         own = survey.take(np.arange(begin, end))
         own_begin = int(own.scan_ids[0]) if cut else 0
         # what those before are registered against is told by the chunk that they belong to
-        damaged = expect_damaged(n_candidates, reading, own_begin)
+        damaged = expect_damaged(n_candidates, recorded.reading, own_begin)
         counted = _CountedScans(opened.scans(survey.scan_ids[first:end], damaged), own_begin)
         scans = log.report_progress(counted, "register_scans", total=end - first)
-        scan_results, edges = mapping.register_candidates(
-            survey, cut, scans, raw, thinned, run, settings
-        )
+        scan_results, edges = mapping.register_candidates(survey, cut, scans, caches, run, settings)
         damage = opened.describe_damage()
     return RegisteredCandidates(
         survey=own,
         results=scan_results,
         edges=edges,
-        read_points=lambda rows: raw.part(rows + (begin - first)),
+        read_points=lambda rows: caches.raw.part(rows + (begin - first)),
         n_dropped=counted.n_dropped,
         n_repeated=counted.n_repeated,
         faults=damaged.faults,

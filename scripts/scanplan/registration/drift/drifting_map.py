@@ -12,56 +12,37 @@ import numpy as np
 from scanplan.registration import multiway, pose_graph, prepared_clouds
 from scanplan.registration.constraints import PoseConstraint, neighbour_reach_m
 from scanplan.registration.drift import closing, folds, odometry, submaps
-from scanplan.registration.registration_settings import (
-    DriftSettings,
-    PoseGraphSettings,
-    SequentialSettings,
-)
+from scanplan.registration.registration_settings import RegistrationSettings, SequentialSettings
 from scanplan.stage import log
-from scanplan.store.scan_cache import ScanCache
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import FloatArray
 
 
 def optimise_drifting_poses(
-    scan_ids: IntArray,
+    scans: multiway.KeptScans,
     odometry_from_cloud: FloatArray,
-    edges: Sequence[PoseConstraint],
-    thinned: ScanCache,
     run: Callable[..., Iterator[Any]],
-    *,
-    planar: bool,
-    limits: SequentialSettings,
-    settings: PoseGraphSettings,
-    drift: DriftSettings,
+    settings: RegistrationSettings,
 ) -> multiway.OptimisedMap:
     """Find the poses of all retained scans at once.
 
     Parameters
     ----------
-    scan_ids : (n,) int, increasing
-        Of the retained scans.
+    scans, run, settings
+        As of `multiway.optimise_poses`.
     odometry_from_cloud : (n, 4, 4) float64
         As recorded.
-    edges, thinned, run, planar, limits, settings
-        As of `multiway.optimise_poses`.
     """
-    graph = _DriftingGraph(
-        scan_ids,
-        odometry_from_cloud,
-        edges,
-        planar=planar,
-        limits=limits,
-        settings=settings,
-        drift=drift,
-    )
+    scan_ids, drift = scans.scan_ids, settings.drift
+    graph = _DriftingGraph(scans, odometry_from_cloud, settings)
     way_m = odometry.measure_way(odometry_from_cloud)
-    clouds = prepared_clouds.PreparedScans(thinned, planar, neighbour_reach_m(limits))
+    reach_m = neighbour_reach_m(settings.limits)
+    clouds = prepared_clouds.PreparedScans(scans.thinned, scans.planar, reach_m)
     maps = submaps.make_submaps(submaps.cut_way(way_m, drift.submap_m), clouds, graph.poses)
     doubtful_m = odometry.measure_doubtful_way(scan_ids, way_m, graph.sequence)
     closer = closing.LoopCloser(scan_ids, maps, doubtful_m, drift)
     links = closer.close_loops(graph.poses, graph.solve_links, run)
     log.log_line(f"register_scans: {len(links):,} places recognised on {way_m[-1]:,.0f} m of way")
-    near = graph.align_near_scans(thinned, run)
+    near = graph.align_near_scans(run)
     # of two scans one constraint: that of their own points is the finer
     by_ends = {multiway.edge_ends(edge): edge for edge in [*links, *near, *graph.sequence]}
     all_edges = [by_ends[ends] for ends in sorted(by_ends)]
@@ -97,24 +78,20 @@ class _DriftingGraph:
 
     def __init__(
         self,
-        scan_ids: IntArray,
+        scans: multiway.KeptScans,
         odometry_from_cloud: FloatArray,
-        edges: Sequence[PoseConstraint],
-        *,
-        planar: bool,
-        limits: SequentialSettings,
-        settings: PoseGraphSettings,
-        drift: DriftSettings,
+        settings: RegistrationSettings,
     ) -> None:
-        self._scan_ids = scan_ids
+        scan_ids = scans.scan_ids
+        self._scans = scans
         self._odometry = odometry_from_cloud
-        self._planar = planar
-        self._limits = limits
         self._settings = settings
         self._row_of_scan = multiway.find_rows(scan_ids)
-        self.sequence = multiway.edges_between(edges, self._row_of_scan)
-        self._steps = odometry.measure_steps(scan_ids, odometry_from_cloud, self.sequence, drift)
-        self._prior_information = _prior_information(odometry_from_cloud, limits)
+        self.sequence = multiway.edges_between(scans.edges, self._row_of_scan)
+        self._steps = odometry.measure_steps(
+            scan_ids, odometry_from_cloud, self.sequence, settings.drift
+        )
+        self._prior_information = _prior_information(odometry_from_cloud, settings.limits)
         self.poses = odometry.chain_scans(scan_ids, odometry_from_cloud, self.sequence)
         self.poses = self.solve(self.sequence, is_start=True).world_from_scan
 
@@ -122,14 +99,15 @@ class _DriftingGraph:
         self, constraints: Sequence[PoseConstraint], *, is_start: bool = False
     ) -> pose_graph.PoseGraphSolution:
         """Solve for the poses from where they are; the constraints' weights come first."""
-        measured = multiway.edge_motions(constraints, self._row_of_scan, self._settings)
+        measured = multiway.edge_motions(constraints, self._row_of_scan, self._settings.graph)
         return pose_graph.solve_pose_graph(
             self.poses,
             measured.join(self._steps),
-            odometry.level_priors(self.poses, self._odometry),
-            self._prior_information,
-            planar=self._planar,
-            kernel=self._settings.kernel_sigmas,
+            pose_graph.KnownPoses(
+                odometry.level_priors(self.poses, self._odometry), self._prior_information
+            ),
+            planar=self._scans.planar,
+            kernel=self._settings.graph.kernel_sigmas,
             is_start=is_start,
         )
 
@@ -140,20 +118,9 @@ class _DriftingGraph:
         n = len(self.sequence)
         return self.poses, solution.weight[n : n + len(links)]
 
-    def align_near_scans(
-        self, thinned: ScanCache, run: Callable[..., Iterator[Any]]
-    ) -> list[PoseConstraint]:
+    def align_near_scans(self, run: Callable[..., Iterator[Any]]) -> list[PoseConstraint]:
         """Align scans that are near each other, as where a localiser placed them."""
-        return multiway.align_visits(
-            self._scan_ids,
-            self.poses,
-            self.sequence,
-            thinned,
-            run,
-            planar=self._planar,
-            limits=self._limits,
-            settings=self._settings,
-        )
+        return multiway.align_visits(self._scans, self.poses, self.sequence, run, self._settings)
 
 
 def _prior_information(odometry_from_cloud: FloatArray, limits: SequentialSettings) -> FloatArray:

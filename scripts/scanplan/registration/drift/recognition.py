@@ -215,23 +215,13 @@ def _correlate(
     column, row = ((target_xy_m - low_m) / cell_m).astype(int).T
     walls[column, row] = 1.0
     blurred = _blur(walls)
-    spectrum = np.fft.rfft2(blurred)
+    raster = _WallRaster(low_m, cell_m, size, padded, np.fft.rfft2(blurred))
     step_rad = max(cell_m / radius_m, np.radians(1.0))
     n_turns = int(np.ceil(turn_rad / step_rad))
     scores = []
     turns = np.arange(-n_turns, n_turns + 1) * step_rad
     for turn in turns:
-        scores.append(
-            _shift_scores(
-                _turned(source, target_from_source, turn),
-                low_m,
-                size,
-                spectrum,
-                n_shifts,
-                padded,
-                cell_m,
-            )
-        )
+        scores.append(raster.score_shifts(_turned(source, target_from_source, turn), n_shifts))
     score = np.array(scores)
     best = score.max()
     motions = []
@@ -261,25 +251,40 @@ def _turn_about_middle(target_from_source: FloatArray, turn: float) -> FloatArra
     return motion
 
 
-def _shift_scores(
-    xy_m: FloatArray,
-    low_m: FloatArray,
-    size: IntArray,
-    spectrum: Array,
-    n_shifts: int,
-    padded: list[int],
-    cell_m: float,
-) -> FloatArray:
-    """Return (2 n + 1, 2 n + 1) correlations of points with a raster, by shift in x and y."""
-    cell = np.floor((xy_m - low_m) / cell_m).astype(int)
-    # what lies outside for every shift cannot meet a wall
-    inside = ((cell >= -n_shifts) & (cell < size + n_shifts)).all(axis=1)
-    points = np.zeros(padded)
-    kept = cell[inside]
-    points[kept[:, 0] % padded[0], kept[:, 1] % padded[1]] = 1.0
-    correlation = np.fft.irfft2(spectrum * np.conj(np.fft.rfft2(points)), s=padded)
-    shifts = np.arange(-n_shifts, n_shifts + 1)
-    return correlation[np.ix_(shifts % padded[0], shifts % padded[1])]
+@dataclass(frozen=True, eq=False)
+class _WallRaster:
+    """Cells that walls were seen in, as points are correlated with them.
+
+    Attributes
+    ----------
+    low_m : (2,) float64
+        The corner that cells are counted from.
+    cell_m : float
+    size : (2,) int
+        Cells along x and y.
+    padded : list of int
+        The same, wider: a shift must not wrap around.
+    spectrum : (padded[0], padded[1] // 2 + 1) complex128
+        Fourier transform of the cells.
+    """
+
+    low_m: FloatArray
+    cell_m: float
+    size: IntArray
+    padded: list[int]
+    spectrum: Array
+
+    def score_shifts(self, xy_m: FloatArray, n_shifts: int) -> FloatArray:
+        """Return (2 n + 1, 2 n + 1) correlations of points with the cells, by shift in x and y."""
+        cell = np.floor((xy_m - self.low_m) / self.cell_m).astype(int)
+        # what lies outside for every shift cannot meet a wall
+        inside = ((cell >= -n_shifts) & (cell < self.size + n_shifts)).all(axis=1)
+        points = np.zeros(self.padded)
+        kept = cell[inside]
+        points[kept[:, 0] % self.padded[0], kept[:, 1] % self.padded[1]] = 1.0
+        correlation = np.fft.irfft2(self.spectrum * np.conj(np.fft.rfft2(points)), s=self.padded)
+        shifts = np.arange(-n_shifts, n_shifts + 1)
+        return correlation[np.ix_(shifts % self.padded[0], shifts % self.padded[1])]
 
 
 def _blur(walls: FloatArray) -> FloatArray:
