@@ -1,11 +1,13 @@
 """Draw convex hulls round the clusters of every scan's points."""
 
+from functools import partial
+
 import numpy as np
 
 from scanplan.selection import hulls
 from scanplan.stage import log, per_scan
 from scanplan.store import registered_scans, schemas, tables
-from scanplan.types import FilePath
+from scanplan.types import FilePath, Settings
 
 
 def build_hulls(
@@ -13,25 +15,21 @@ def build_hulls(
     registration: FilePath,
     output: FilePath,
     *,
-    n_clusters: int,
-    sample_size: int,
-    radius: str,
-    seed: int,
+    settings: Settings,
     threads: int,
     chunk: str | None = None,
 ) -> None:
-    """Write the table of hulls of scans, or of a chunk of them; all registered must be there."""
+    """Write the table of hulls of scans, or of a chunk of them; all registered must be there.
+
+    `settings` are keywords of `hulls.make_cluster_hulls`.
+    """
     registered_scans.read_registered_scans(registration, tables.ScanStore(scans))
     parts = per_scan.map_scans(
-        hulls.make_cluster_hulls,
+        partial(hulls.make_cluster_hulls, **settings),
         scans,
         label="build_hulls",
         threads=threads,
         scan_ids=per_scan.read_chunk_ids(scans, chunk),
-        n_clusters=n_clusters,
-        sample_size=sample_size,
-        radius=radius,
-        seed=seed,
     )
     columns = hulls.concatenate_hulls(parts)
     tables.write_table(output, schemas.HULLS, columns)
@@ -52,7 +50,7 @@ if __name__ == "__main__":
             snakemake.input.scans,
             snakemake.input.registration,
             snakemake.output.hulls,
-            **snakemake.params.settings,
+            settings=snakemake.params.settings,
             threads=snakemake.threads,
             chunk=snakemake.wildcards.get("chunk"),
         )

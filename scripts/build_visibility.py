@@ -1,6 +1,7 @@
 """Build the visibility polygon of every scan: the free space that it looked through."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from scanplan.rays import visibility_polygon
@@ -33,12 +34,14 @@ def build_visibility(
         Which scans, see `per_scan.read_chunk_ids`; all by default.
     """
     _, polygons = map_registered_scans(
-        visibility_polygon.scan_free_space,
+        partial(
+            visibility_polygon.scan_free_space,
+            settings=visibility_polygon.VisibilitySettings(**settings),
+        ),
         scans,
         registration,
         label="build_visibility",
         threads=threads,
-        settings=visibility_polygon.VisibilitySettings(**settings),
         chunk=chunk,
     )
     columns = visibility_polygon.visibility_columns(polygons)

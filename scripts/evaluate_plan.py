@@ -25,11 +25,7 @@ _FRAMES = {
 
 
 def evaluate_plan(
-    plan: Mapping[str, FilePath],
-    poses: FilePath,
-    registration: FilePath,
-    truth: FilePath,
-    true_poses: FilePath,
+    inputs: Mapping[str, FilePath],
     output: FilePath,
     *,
     max_range_m: float,
@@ -39,21 +35,23 @@ def evaluate_plan(
 
     Parameters
     ----------
-    plan : dict of str to path-like
+    inputs : dict of str to path-like
         plan/<name>.parquet by the names `faces`, `walls`, `openings`, `rooms`, `furniture`, `free`
-        and `evidence`.
-    poses, registration, truth, true_poses, output : path-like
-        poses.parquet, registration.parquet, truth.geojson and truth_poses.tum;
+        and `evidence`; `poses`, `registration`, `truth` and `true_poses`: poses.parquet,
+        registration.parquet, truth.geojson and truth_poses.tum.
+    output : path-like
         evaluation/plan.parquet, to write.
     max_range_m, bitmap_cell_m : float
         How far a scan can see; edge of a bitmap's cell.
     """
+    registration, truth = inputs["registration"], inputs["truth"]
+    evidence, true_poses = inputs["evidence"], inputs["true_poses"]
     scans = registered_scans.read_registered_scans(registration)
     track = truth_file.read_true_poses(true_poses)
     placed = truth_file.interpolate_true_poses(track, scans.t_ns, true_poses)
-    drawn = plan_metrics.read_plan_tables(plan)
-    plan_scan_ids = plan_metrics.evidence_scan_ids(plan["evidence"])
-    rows = registered_scans.rows_of_scans(plan_scan_ids, scans, plan["evidence"], registration)
+    drawn = plan_metrics.read_plan_tables(inputs)
+    plan_scan_ids = plan_metrics.evidence_scan_ids(evidence)
+    rows = registered_scans.rows_of_scans(plan_scan_ids, scans, evidence, registration)
     floor = wall_findings.observe_truth(
         truth_file.read_true_faces(truth),
         placed[rows],
@@ -72,7 +70,7 @@ def evaluate_plan(
             **plan_metrics.measure_plan(drawn, moved, true, floor),
         }
         measures.append(row)
-    _log_measures({row["frame"]: row for row in measures}, plan["free"], poses)
+    _log_measures({row["frame"]: row for row in measures}, inputs["free"], inputs["poses"])
     columns = plan_metrics.plan_evaluation_columns(measures)
     tables.write_table(output, schemas.PLAN_EVALUATION, columns)
 
@@ -94,13 +92,8 @@ def _log_measures(measures: Mapping[str, Any], free: FilePath, poses: FilePath) 
 
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
-        names = ("faces", "walls", "openings", "rooms", "furniture", "free", "evidence")
         evaluate_plan(
-            {name: snakemake.input[name] for name in names},
-            snakemake.input.poses,
-            snakemake.input.registration,
-            snakemake.input.truth,
-            snakemake.input.true_poses,
+            dict(snakemake.input.items()),
             snakemake.output.plan,
             max_range_m=snakemake.params.max_range_m,
             **snakemake.params.settings,

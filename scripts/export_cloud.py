@@ -1,7 +1,7 @@
 """Write the registered points as a LAZ file, and a picture of them from above."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -24,14 +24,10 @@ _MARGIN_M = 1.0  # around the floor that was seen: walls, and what is against th
 
 
 def export_cloud(
-    scans: FilePath,
-    registration: FilePath,
-    selection: FilePath,
-    free: FilePath,
+    inputs: Mapping[str, Any],
     outputs: Mapping[str, FilePath],
     *,
     settings: Settings,
-    recordings: Sequence[str] = (),
     reading: Mapping[str, Any] | None = None,
     **stop: Any,
 ) -> None:
@@ -39,30 +35,33 @@ def export_cloud(
 
     Parameters
     ----------
-    scans, registration, selection, free : path-like
-        scans.parquet, registration.parquet, selection/<method>.parquet and plan/free.parquet,
-        which states how reference points place the map.
+    inputs : dict
+        `scans`, `registration`, `selection` and `free`, path-like: scans.parquet,
+        registration.parquet, selection/<method>.parquet and plan/free.parquet, which states how
+        reference points place the map; `recordings`, list of str: the dataset's files, of which the
+        points' colours are read, if it has any.
     outputs : dict of str to path-like
         `cloud` and `picture`: cloud.laz and cloud.png, to write.
     settings : dict
         `scans`, `chosen` or `all`, and `cell_m`, see `point_cloud.write_laz`; `site`, see
         `model_origin.Site`.
-    recordings, reading
-        As of `survey.open_survey`: what the points' colours are read from, if it has any.
+    reading : dict, optional
+        Keywords of `survey.open_survey`.
     **stop
         How many scans are chosen, see `stopping.choose_n_scans`.
     """
-    store = tables.ScanStore(scans)
+    free = inputs["free"]
+    store = tables.ScanStore(inputs["scans"])
     wanted = store.scan_ids
     if settings["scans"] == "chosen":
-        wanted = np.sort(stopping.read_chosen_scans(selection, **stop)[0])
-    t_ns = int(registered_scans.read_registered_scans(registration).t_ns[-1])
+        wanted = np.sort(stopping.read_chosen_scans(inputs["selection"], **stop)[0])
+    t_ns = int(registered_scans.read_registered_scans(inputs["registration"]).t_ns[-1])
     note = tables.read_note(free, schemas.FREE, "georeference")
     site = find_site(GeoReference(**json.loads(note)) if note else None, settings["site"])
     picture = _begin_picture(free)
     with (
         atomic.replace_file(outputs["cloud"]) as temporary,
-        open_colours(recordings, **(reading or {})) as read_colours,
+        open_colours(inputs["recordings"], **(reading or {})) as read_colours,
     ):
         clouds = log.report_progress(store.scans(wanted), "export_cloud", total=len(wanted))
         n_points, n_kept = point_cloud.write_laz(
@@ -119,13 +118,9 @@ def _draw(
 if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         export_cloud(
-            snakemake.input.scans,
-            snakemake.input.registration,
-            snakemake.input.selection,
-            snakemake.input.free,
+            dict(snakemake.input.items()),
             dict(snakemake.output.items()),
             settings=snakemake.params.settings,
-            recordings=snakemake.input.recordings,
             reading=snakemake.params.reading,
             **snakemake.params.stop,
         )

@@ -99,7 +99,8 @@ def interpolate_poses(
             if survey.pose_kind == pose_kind.ESTIMATED and is_moved:
                 is_steady = lidar_odometry.find_steady(survey.pose_edges()[0], motion, t_ns)
         chosen = candidates.choose_candidates(pose, is_steady=is_steady, **spacing)
-        candidates.require_poses(chosen, t_ns, covered, edges, files[0], **limits)
+        candidates.log_jumps(edges, files[0], max_speed_m_s=max_speed_m_s)
+        candidates.require_poses(covered[chosen], t_ns, edges, files[0], max_gap_s=max_gap_s)
         _log_unsteady(is_steady, chosen)
     n_covered = int(covered[chosen].sum())
     n_without = len(chosen) - n_covered

@@ -1,6 +1,7 @@
 """Measure how much wall every scan shows, and where, without extracting walls."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 from scanplan.selection import persistence, wall_cells
@@ -38,14 +39,12 @@ def observe_walls(
     sensors_m = registered_scans.sensor_positions(store.scan_ids, known, scans, registration)
     axes_deg = wall_cells.choose_axes_deg(store, sensors_m, own)
     scan_ids, observations = map_registered_scans(
-        wall_cells.observe_wall_cells,
+        partial(wall_cells.observe_wall_cells, settings=own, axes_deg=axes_deg),
         scans,
         registration,
         label="observe_walls",
         threads=threads,
-        settings=own,
         chunk=chunk,
-        axes_deg=axes_deg,
     )
     columns = wall_cells.observation_columns(scan_ids, observations)
     # what other scans show there may be in another chunk: that is for `gather_chunks`

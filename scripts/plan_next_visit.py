@@ -16,10 +16,7 @@ from scanplan.visit import next_visit, sensor_reach
 
 
 def plan_next_visit(
-    plan: Mapping[str, FilePath],
-    selection: FilePath,
-    scans: FilePath,
-    registration: FilePath,
+    inputs: Mapping[str, FilePath],
     outputs: Mapping[str, FilePath],
     *,
     name: str,
@@ -30,10 +27,10 @@ def plan_next_visit(
 
     Parameters
     ----------
-    plan : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms`, `free` and `confidence` of plan/.
-    selection, scans, registration : path-like
-        selection/<method>.parquet, scans.parquet and registration.parquet.
+    inputs : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms`, `free` and `confidence` of plan/; `selection`,
+        `scans` and `registration`: selection/<method>.parquet, scans.parquet and
+        registration.parquet.
     outputs : dict of str to path-like
         `questions`, `standpoints` and `geojson`, to write.
     name : str
@@ -43,14 +40,15 @@ def plan_next_visit(
     **stop
         How many scans make the plan, see `stopping.choose_n_scans`.
     """
-    drawn = floorplan_files.read_floorplan(plan, name)
+    selection, registration = inputs["selection"], inputs["registration"]
+    drawn = floorplan_files.read_floorplan(inputs, name)
     registered = registered_scans.read_registered_scans(registration)
     chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
     # what one scan does not show of the sensor's field, others do; the first are of most places
     shown_ids = np.sort(chosen_ids[: FEW * FEW])
     rows = registered_scans.rows_of_scans(shown_ids, registered, selection, registration)
     poses = registered.map_from_sensor
-    points = (xyz_m for _, xyz_m in tables.ScanStore(scans).scans(shown_ids))
+    points = (xyz_m for _, xyz_m in tables.ScanStore(inputs["scans"]).scans(shown_ids))
     reach = sensor_reach.measure_reach(zip(points, poses[rows], strict=True), drawn.floor_z_m)
     limits = next_visit.VisitSettings(**settings)
     visit = next_visit.plan_visit(drawn, poses[:, :2, 3], reach, limits)
@@ -70,9 +68,6 @@ if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         plan_next_visit(
             dict(snakemake.input.items()),
-            snakemake.input.selection,
-            snakemake.input.scans,
-            snakemake.input.registration,
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,

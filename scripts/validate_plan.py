@@ -15,10 +15,7 @@ from scanplan.validation.doubts import NO_RAYS
 
 
 def validate_plan(
-    plan: Mapping[str, FilePath],
-    selection: FilePath,
-    scans: FilePath,
-    registration: FilePath,
+    inputs: Mapping[str, FilePath],
     outputs: Mapping[str, FilePath],
     *,
     settings: Settings,
@@ -30,10 +27,9 @@ def validate_plan(
 
     Parameters
     ----------
-    plan : dict of str to path-like
-        `faces`, `walls`, `openings`, `rooms` and `free` of plan/.
-    selection, scans, registration : path-like
-        selection/<method>.parquet, scans.parquet and registration.parquet.
+    inputs : dict of str to path-like
+        `faces`, `walls`, `openings`, `rooms` and `free` of plan/; `selection`, `scans` and
+        `registration`: selection/<method>.parquet, scans.parquet and registration.parquet.
     outputs : dict of str to path-like
         `elements`, `rays` and `confidence`, to write: plan/validation.parquet,
         plan/validation_rays.parquet and plan/confidence.parquet.
@@ -43,10 +39,10 @@ def validate_plan(
         How many scans make the plan, see `stopping.choose_n_scans`.
     """
     limits = prediction.ValidationSettings(**settings)
-    drawn = floorplan_files.read_floorplan(plan)
-    chosen_ids, _ = stopping.read_chosen_scans(selection, **stop)
-    registered = registered_scans.read_registered_scans(registration)
-    store = tables.ScanStore(scans)
+    drawn = floorplan_files.read_floorplan(inputs)
+    chosen_ids, _ = stopping.read_chosen_scans(inputs["selection"], **stop)
+    registered = registered_scans.read_registered_scans(inputs["registration"])
+    store = tables.ScanStore(inputs["scans"])
     rays = left_out_scans.draw_left_out_rays(store, registered, chosen_ids, drawn, limits)
     n_left_out, n_drawn = len(registered.scan_ids) - len(chosen_ids), len(rays.scan_ids)
     found = prediction.validate_by_rays(drawn, rays, limits)
@@ -93,9 +89,6 @@ if __name__ == "__main__":
     with log.log_to_file(snakemake.log[0]):
         validate_plan(
             dict(snakemake.input.items()),
-            snakemake.input.selection,
-            snakemake.input.scans,
-            snakemake.input.registration,
             dict(snakemake.output.items()),
             settings=snakemake.params.settings,
             **snakemake.params.stop,

@@ -1,6 +1,7 @@
 """The floor area that scans cover: by their clusters' hulls, and as they truly see it."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -41,12 +42,10 @@ def cluster_growth_columns(
     parts = []
     for number in sorted(n_clusters):
         scan_hulls = per_scan.map_scans(
-            hulls.make_cluster_hulls,
+            partial(hulls.make_cluster_hulls, n_clusters=number, **sampling),
             scans_path,
             label=f"measure_coverage, {number} clusters",
             threads=threads,
-            n_clusters=number,
-            **sampling,
         )
         parts.append(_growth_columns(hulls.concatenate_hulls(scan_hulls), number))
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -96,10 +96,12 @@ def _count(plan: Path, results: Path, settings: Settings) -> dict[str, float]:
     found = {name: plan / f"{name}.parquet" for name in ("validation", "validation_rays")}
     with contextlib.redirect_stdout(None), contextlib.redirect_stderr(None):
         validate_plan.validate_plan(
-            {table: plan / f"{table}.parquet" for table in planning.TABLES},
-            results / f"selection/{method}.parquet",
-            results / "scans.parquet",
-            results / "registration.parquet",
+            {
+                **{table: plan / f"{table}.parquet" for table in planning.TABLES},
+                "selection": results / f"selection/{method}.parquet",
+                "scans": results / "scans.parquet",
+                "registration": results / "registration.parquet",
+            },
             {
                 "elements": found["validation"],
                 "rays": found["validation_rays"],

@@ -164,10 +164,7 @@ def _make_tables(results: Path, settings: Settings, kept: Path, *, rate: bool) -
     if not rate:
         return
     validate_plan.validate_plan(
-        tables,
-        selection,
-        scans,
-        registration,
+        tables | {"selection": selection, "scans": scans, "registration": registration},
         {
             "elements": kept / "validation.parquet",
             "rays": kept / "validation_rays.parquet",

@@ -75,9 +75,9 @@ def make_plan(place, recordings, *, until="plan", part=None, **topics):
     assemble_plan(files["segments"], files["order"], *scanned, plan, settings=settings, **stop)
     rated = {name: place / f"{file}.parquet" for name, file in _RATINGS.items()}
     validate_plan(
-        plan,
-        files["order"],
-        *scanned,
+        plan
+        | {"selection": files["order"]}
+        | {name: files[name] for name in ("scans", "registration")},
         rated,
         settings=stage_settings.select_validation(SETTINGS),
         **stop,

@@ -11,9 +11,11 @@ from helpers.corrected_files import exported, read_texts
 from helpers.default_settings import SCHEMA, SETTINGS
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.project import building_file, corrections_file, dataset, overlooked_files
-from scanplan.project.settings import end_on_faulty_settings
+from scanplan.project.settings import KnownSettings, end_on_faulty_settings
 
 _ROOT = Path(__file__).resolve().parents[2]
+_DRAWINGS = _ROOT / "config/buildings"
+_KNOWN = KnownSettings(SETTINGS, [], SCHEMA)
 
 
 def list_word_cases(folder, n_drawn):
@@ -142,15 +144,11 @@ def _list_places(folder):
 
 
 def _describe(folder, _):
-    known = {"defaults": SETTINGS, "given": [], "schema": SCHEMA}
-    return dataset.describe_dataset("d", folder / "d", drawings=_ROOT / "config/buildings", **known)
+    return dataset.describe_dataset("d", folder / "d", _KNOWN, drawings=_DRAWINGS)
 
 
 def _describe_survey(folder, name):
-    known = {"defaults": SETTINGS, "given": [], "schema": SCHEMA}
-    return dataset.describe_dataset(
-        "d", folder / name, drawings=_ROOT / "config/buildings", **known
-    )
+    return dataset.describe_dataset("d", folder / name, _KNOWN, drawings=_DRAWINGS)
 
 
 def _find_building(folder, _):

@@ -5,6 +5,7 @@ import pytest
 import shapely
 
 import build_hulls
+from helpers.refusals import refused
 from helpers.toy_survey import write_registration
 from scanplan.errors import StageError
 from scanplan.store import schemas, tables
@@ -32,7 +33,9 @@ def scans(tmp_path):
 
 def test_rows_of_every_scan(scans, registration, tmp_path, caplog):
     caplog.set_level(logging.INFO)
-    build_hulls.build_hulls(scans, registration, tmp_path / "hulls.parquet", **SETTINGS, threads=1)
+    build_hulls.build_hulls(
+        scans, registration, tmp_path / "hulls.parquet", settings=SETTINGS, threads=1
+    )
     columns = tables.read_table(tmp_path / "hulls.parquet", schemas.HULLS)
     assert np.unique(columns["scan_id"]).tolist() == [0, 5, 6, 40, 41]
     assert np.bincount(columns["scan_id"], columns["n_points"])[[0, 5, 6, 40, 41]].tolist() == [
@@ -55,17 +58,17 @@ def test_rows_of_every_scan(scans, registration, tmp_path, caplog):
 def test_same_bytes_for_any_number_of_cores(scans, registration, tmp_path):
     for threads in (1, 2):
         output = tmp_path / f"{threads}.parquet"
-        build_hulls.build_hulls(scans, registration, output, **SETTINGS, threads=threads)
+        build_hulls.build_hulls(scans, registration, output, settings=SETTINGS, threads=threads)
     assert (tmp_path / "1.parquet").read_bytes() == (tmp_path / "2.parquet").read_bytes()
 
 
 def test_no_scans_no_hulls(tmp_path, registration):
-    with pytest.raises(StageError, match="does not exist"):
+    with refused(file="scans.parquet"):
         build_hulls.build_hulls(
             tmp_path / "scans.parquet",
             registration,
             tmp_path / "hulls.parquet",
-            **SETTINGS,
+            settings=SETTINGS,
             threads=1,
         )
     assert not (tmp_path / "hulls.parquet").exists()
@@ -76,5 +79,5 @@ def test_a_scan_without_points_is_told(scans, tmp_path):
     write_registration(registration, (0, 5, 6, 7, 40, 41), np.zeros((6, 3)))
     with pytest.raises(StageError, match=r"scans\.parquet: lacks scan 7 of .*\(1 such scans\)"):
         build_hulls.build_hulls(
-            scans, registration, tmp_path / "hulls.parquet", **SETTINGS, threads=1
+            scans, registration, tmp_path / "hulls.parquet", settings=SETTINGS, threads=1
         )

@@ -15,11 +15,13 @@ def evaluated(folder, segments, kind="", wall_rows=(), **placing):
     columns = tables.read_table(poses, schemas.POSES)
     tables.write_table(poses, schemas.POSES, columns, notes={pose_kind.NOTE: kind})
     plan = plan_making.write(folder, SCAN_IDS, face_segments=segments, wall_rows=wall_rows)
-    inputs = [
-        folder / name
-        for name in ("poses.parquet", "registration.parquet", "truth.geojson", "truth_poses.tum")
-    ]
-    evaluate_plan(plan, *inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
+    inputs = {
+        "poses": poses,
+        "registration": folder / "registration.parquet",
+        "truth": folder / "truth.geojson",
+        "true_poses": folder / "truth_poses.tum",
+    }
+    evaluate_plan(plan | inputs, folder / "plan.parquet", max_range_m=100.0, bitmap_cell_m=0.05)
     return tables.read_table(folder / "plan.parquet", schemas.PLAN_EVALUATION)
 
 

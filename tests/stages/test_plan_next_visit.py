@@ -21,12 +21,12 @@ def house(tmp_path_factory):
     inputs = house_making.write(folder, house_making.segments(), house_making.SENSORS)
     paths = {name: folder / f"plan_{name}.parquet" for name in planning.TABLES}
     assemble_plan(*inputs, paths, settings=house_making.PLAN, n_scans=None)
-    return inputs[1:], {name: paths[name] for name in PARTS}
+    further = dict(zip(("selection", "scans", "registration"), inputs[1:], strict=True))
+    return {name: paths[name] for name in PARTS} | further
 
 
-def planned(house, folder, doubtful=()):
+def planned(plan, folder, doubtful=()):
     """Plan a visit where the rooms named are doubtful and all else is sure."""
-    inputs, plan = house
     parts = []
     for table, number in sorted(floorplan.NUMBERS.items()):
         schema = schemas.PLAN_WALLS if table == "walls" else getattr(schemas, table.upper())
@@ -46,7 +46,7 @@ def planned(house, folder, doubtful=()):
     files = {name: folder / f"{name}.parquet" for name in ("questions", "standpoints")}
     files["geojson"] = folder / "next_visit.geojson"
     known = plan | {"confidence": folder / "confidence.parquet"}
-    plan_next_visit(known, *inputs, files, name="house", settings=SETTINGS, n_scans=None)
+    plan_next_visit(known, files, name="house", settings=SETTINGS, n_scans=None)
     asked = tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True)
     stops = tables.read_table(files["standpoints"], schemas.STANDPOINTS, allow_empty=True)
     return asked, stops, json.loads(files["geojson"].read_text())
@@ -60,7 +60,7 @@ def test_where_nothing_is_doubtful_nobody_has_to_come_again(house, tmp_path):
 
 
 def test_a_doubtful_room_is_seen_from_within(house, tmp_path):
-    areas = floorplan_files.read_floorplan(house[1]).areas
+    areas = floorplan_files.read_floorplan(house).areas
     for room, area in enumerate(areas):
         asked, stops, _ = planned(house, tmp_path, doubtful=[room])
         assert (asked["kind"].tolist(), asked["number"].tolist()) == (["room"], [room])

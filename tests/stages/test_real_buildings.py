@@ -33,6 +33,9 @@ def models(recordings_dir):
     }
 
 
+WAY = building_route.WaySettings("rooms", clearance_m=0.25)
+
+
 @pytest.fixture(scope="module")
 def storey_of(models):
     """Give a storey of a model, cut once for all tests."""
@@ -79,9 +82,9 @@ def test_a_storey_has_its_parts_and_its_truth(storey_of, name, storey, expected)
     assert off_the_mesh(found) < 1e-3
     if n_reached is None:
         with pytest.raises(StageError, match="can be entered"):
-            building_route.plan_building_route(found, name, route="rooms", clearance_m=0.25)
+            building_route.plan_building_route(found, name, WAY)
         return
-    driven = building_route.plan_building_route(found, name, route="rooms", clearance_m=0.25)
+    driven = building_route.plan_building_route(found, name, WAY)
     assert (
         sum(values["visited"] for _, values in driven.truth if values["kind"] == "room")
         >= n_reached

@@ -32,7 +32,8 @@ def make_plan(folder, sensors=house_making.SENSORS):
     inputs = house_making.write(folder, house_making.segments(), sensors)
     paths = {name: folder / f"plan_{name}.parquet" for name in planning.TABLES}
     assemble_plan(*inputs, paths, settings=house_making.PLAN, n_scans=None)
-    return inputs[1:], {name: paths[name] for name in PARTS}
+    further = dict(zip(("selection", "scans", "registration"), inputs[1:], strict=True))
+    return {name: paths[name] for name in PARTS} | further
 
 
 @pytest.fixture(scope="module")
@@ -42,9 +43,8 @@ def house(tmp_path_factory):
 
 def validated(house, folder, *, settings=SETTINGS, n_scans=2):
     folder.mkdir(exist_ok=True)
-    inputs, plan = house
     outputs = {name: folder / f"{name}.parquet" for name in ("elements", "rays", "confidence")}
-    validate_plan(plan, *inputs, outputs, settings=settings, n_scans=n_scans)
+    validate_plan(house, outputs, settings=settings, n_scans=n_scans)
     elements = tables.read_table(outputs["elements"], schemas.VALIDATION)
     rays = tables.read_table(outputs["rays"], schemas.VALIDATION_RAYS, allow_empty=True)
     absent = tables.read_note(outputs["elements"], schemas.VALIDATION, "absent")
@@ -104,14 +104,14 @@ def test_from_one_place_the_share_is_absent(tmp_path):
 
 def test_every_element_of_a_plan_is_rated(house, tmp_path):
     _, _, _, outputs = validated(house, tmp_path)
-    plan = floorplan_files.read_floorplan(house[1] | {"confidence": outputs["confidence"]})
+    plan = floorplan_files.read_floorplan(house | {"confidence": outputs["confidence"]})
     for table in floorplan.NUMBERS:
         columns = getattr(plan, table)
         # the toy's scans see neither floor nor ceiling
         assert ((columns["p_true"] >= 0) & (columns["p_true"] < 1)).all()
         assert ((columns["doubt"] != "") == (columns["about"] != "")).all()
         assert (columns["doubt"][columns["verify"]] != "").all()
-    assert np.isnan(floorplan_files.read_floorplan(house[1]).walls.get("p_true", np.nan))
+    assert np.isnan(floorplan_files.read_floorplan(house).walls.get("p_true", np.nan))
 
 
 def test_no_truth_is_read():
@@ -140,7 +140,7 @@ def place(elements, kind, at_m):
 @pytest.fixture(scope="module")
 def tested(house):
     """The plan, and rays from sixteen other places."""
-    plan = floorplan_files.read_floorplan(house[1])
+    plan = floorplan_files.read_floorplan(house)
     sensors = [(x, y, 0.9) for x in (1, 3, 5, 7.2) for y in (0.6, 1.4, 2.6, 3.4)]
     return plan, house_making.looked(sensors=sensors, columns=300)
 

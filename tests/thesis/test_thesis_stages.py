@@ -76,9 +76,8 @@ def survey(tmp_path):
         tmp_path / "scans.parquet",
         tmp_path / "registration.parquet",
         tmp_path / "hulls.parquet",
-        n_clusters=6,
+        settings={"n_clusters": 6, **SAMPLING},
         threads=1,
-        **SAMPLING,
     )
     for extractor in EXTRACTORS:
         write_walls(
@@ -289,8 +288,7 @@ def test_every_figure_is_drawn_and_stands_on_the_page(survey, tmp_path):
     draw_thesis_rooms(
         files,
         [evaluation] * 2,
-        drawn[:11],
-        tmp_path / "orders.svg",
+        {"figures": drawn[:11], "orders": tmp_path / "orders.svg"},
         bitmap_cell_m=0.05,
         max_range_m=100.0,
         extraction=stage_settings.select_extractor(SETTINGS, "cluster_ransac"),
@@ -346,7 +344,7 @@ def test_claims_are_judged_seed_by_seed_and_written_to_the_page(tmp_path):
     own_figures = [tmp_path / f"{name}.svg" for name in ("orders", "gates", "alignments")]
     for path in own_figures:
         path.write_text("<svg></svg>")
-    write_thesis(figures, own_figures, tmp_path / "claims.parquet", *steps, made.PAGE, output)
+    write_thesis(figures, own_figures, tmp_path / "claims.parquet", steps, made.PAGE, output)
     page = output.read_text()
     assert (
         "does not hold" in page

@@ -9,18 +9,18 @@ from shapely import box
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.bare_parts import cut_bare_parts, draw_way, take_visited
+from scanplan.geometry.bare_parts import MouthLimits, cut_bare_parts, draw_way, take_visited
 
 ROOM = box(0, 0, 6, 4)
 MOUTH_M = (1.0, 3.0)
 FAN = Polygon([(6, 1), (16, -4), (16, 8), (6, 3)])  # seen through a mouth of 2 m
 WALLS = ROOM.exterior.difference(LineString([(6, 1), (6, 3)]))
 INSIDE = LineString([(1, 2), (5, 2)])
-LIMITS = {"max_walled": 0.3, "beside_m": 0.6, "step_m": 0.1}
+LIMITS = MouthLimits(max_walled=0.3, beside_m=0.6, step_m=0.1)
 
 
 def cut(ground, walls: BaseGeometry = WALLS, visited: BaseGeometry = INSIDE):
-    (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, **LIMITS)
+    (left,) = cut_bare_parts(ground, walls.buffer(0.1), visited, LIMITS)
     return left
 
 
@@ -49,7 +49,7 @@ def test_a_corner_whose_walls_nobody_saw_stays():
 
 
 def test_a_fan_alone_is_all_cut():
-    assert cut_bare_parts(FAN, WALLS, INSIDE, **LIMITS) in (
+    assert cut_bare_parts(FAN, WALLS, INSIDE, LIMITS) in (
         [],
         [FAN],
     )
@@ -129,7 +129,7 @@ def test_of_ground_that_a_cut_parts_all_that_was_visited_stays():
     walls = shapely.union(WALLS, second.exterior.difference(LineString([(16, 0), (16, 4)])))
     ground = shapely.union_all([ROOM, FAN, second])
     ways = shapely.MultiLineString([[(1, 2), (5, 2)], [(17, 2), (19, 2)]])
-    found = cut_bare_parts(ground, walls.buffer(0.1), ways, **LIMITS)
+    found = cut_bare_parts(ground, walls.buffer(0.1), ways, LIMITS)
     assert all(any(part.covers(way) for part in found) for way in ways.geoms)
 
 

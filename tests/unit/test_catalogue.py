@@ -114,7 +114,7 @@ def test_half_of_the_named_rooms_at_least_can_be_driven_into(kind, seed):
         text_of(kind, seed).encode(), Path(f"{kind}.geojson"), slice_height_m=0.45
     )
     driven = building_route.plan_building_route(
-        site, "drawing", route="rooms", clearance_m=0.25, reach_m=0.2
+        site, "drawing", building_route.WaySettings("rooms", 0.25), reach_m=0.2
     )
     rooms = [v for _, v in driven.truth if v["kind"] == "room" and v["name"]]
     # bathrooms of hotels and wards are shut as a rule

@@ -10,7 +10,7 @@ def test_range_and_finite_mask_goes_over_points_and_times():
     xyz_m = np.array(
         [[1, 0, 0], [np.nan, 0, 0], [0, 0.05, 0], [0, 3, 0], [0, 0, np.inf], [0, 0, 2], [0, 0, 0]]
     )
-    given = {"min_range_m": 0.1, "max_range_m": 2.0, "sweep_times": TimeConvention("s", "stamp")}
+    given = {"limits": clouds.RangeLimits(0.1, 2.0), "sweep_times": TimeConvention("s", "stamp")}
     scan = clouds.keep_in_range(3, T_NS, xyz_m, np.arange(7) / 20, **given)
     np.testing.assert_array_equal(scan.xyz_m, [[1, 0, 0], [0, 0, 2]])
     np.testing.assert_allclose(scan.time_s, [0, 0.25])
@@ -21,7 +21,7 @@ def test_scans_of_the_same_points_have_one_digest():
     rng = np.random.default_rng(3)
     one, other = rng.uniform(1, 5, (2, 100, 3))
     read = [
-        clouds.keep_in_range(i, T_NS + i, xyz_m, None, min_range_m=0.1, max_range_m=20)
+        clouds.keep_in_range(i, T_NS + i, xyz_m, None, clouds.RangeLimits(0.1, 20))
         for i, xyz_m in enumerate([one, other, one.astype(np.float32), one + 1e-6])
     ]
     digests = [scan.digest for scan in read]
@@ -29,14 +29,13 @@ def test_scans_of_the_same_points_have_one_digest():
 
 
 def test_all_points_dropped():
-    scan = clouds.keep_in_range(
-        0, T_NS, np.full((4, 3), np.nan), None, min_range_m=0, max_range_m=9
-    )
+    nowhere_m = np.full((4, 3), np.nan)
+    scan = clouds.keep_in_range(0, T_NS, nowhere_m, None, clouds.RangeLimits(0, 9))
     assert (scan.xyz_m.shape, scan.time_s, scan.n_dropped) == ((0, 3), None, 4)
 
 
 def test_times_that_are_no_sweep_are_none():
-    given = {"min_range_m": 0.1, "max_range_m": 2.0, "sweep_times": TimeConvention("s", "stamp")}
+    given = {"limits": clouds.RangeLimits(0.1, 2.0), "sweep_times": TimeConvention("s", "stamp")}
     xyz_m = np.ones((3, 3), np.float32)
     for raw in ([0, 0.4, 0.6], [0, np.nan, 0.1], [2.0, 2.1, 2.1]):
         assert clouds.keep_in_range(0, T_NS, xyz_m, np.array(raw), **given).time_s is None
@@ -77,7 +76,7 @@ def test_planar_only_if_the_first_scans_share_the_plane_and_no_more_is_read():
 
 def test_points_in_range():
     xyz_m = np.array([(0, 0, 0), (1, 0, 0), (0, 3, 4), (9, 0, 0), (np.nan, 1, 0)])
-    assert clouds.is_in_range(xyz_m, min_range_m=1.0, max_range_m=5.0).tolist() == [
+    assert clouds.RangeLimits(1.0, 5.0).include(xyz_m).tolist() == [
         False,
         True,
         True,

@@ -1,5 +1,7 @@
 """Which datasets a run has, and which files belong to each."""
 
+import functools
+
 import pytest
 
 from helpers.default_settings import SCHEMA, SETTINGS
@@ -9,13 +11,14 @@ from scanplan.project.settings_schema import list_choices
 
 
 @pytest.fixture
-def known(project_root):
-    return {
-        "defaults": SETTINGS,
-        "given": [],
-        "schema": SCHEMA,
-        "drawings": project_root / "config/buildings",
-    }
+def known():
+    return settings.KnownSettings(SETTINGS, [], SCHEMA)
+
+
+@pytest.fixture
+def describe(known, project_root):
+    drawings = project_root / "config/buildings"
+    return functools.partial(dataset.describe_dataset, known=known, drawings=drawings)
 
 
 def survey_file(folder, text="simulate: {building: tiny_office}"):
@@ -49,41 +52,38 @@ def test_the_place_of_the_thesis_is_taken():
         dataset.name_datasets("surveys/thesis")
 
 
-def test_the_demo_is_simulated_with_the_defaults(known):
-    found = dataset.describe_dataset("demo", None, **known)
+def test_the_demo_is_simulated_with_the_defaults(describe):
+    found = describe("demo", None)
     assert found.building.endswith("config/buildings/demo_office.geojson")
     assert found.recordings == ("results/demo/survey/survey.bag",)
     assert found.truth == (
         "results/demo/survey/truth.geojson",
         "results/demo/survey/truth_poses.tum",
     )
-    assert found.settings["simulate"] == known["defaults"]["simulate"]
+    assert found.settings["simulate"] == SETTINGS["simulate"]
 
 
-def test_a_file_describes_a_simulated_survey(known, tmp_path):
+def test_a_file_describes_a_simulated_survey(describe, tmp_path):
     path = survey_file(
         tmp_path, "simulate: {building: tiny_office, recording: mcap}\nhulls: {n_clusters: 3}"
     )
-    found = dataset.describe_dataset("tiny", path, **known)
+    found = describe("tiny", path)
     assert found.recordings == ("results/tiny/survey/survey.mcap",)
     assert found.building.endswith("tiny_office.geojson")
     assert found.settings["hulls"]["n_clusters"] == 3
-    assert found.settings["simulate"]["seed"] == known["defaults"]["simulate"]["seed"]
+    assert found.settings["simulate"]["seed"] == SETTINGS["simulate"]["seed"]
 
 
-def test_the_command_line_wins_over_the_file(known, tmp_path):
-    known["given"] = [settings.Layer("--config", {"simulate": {"seed": 9}})]
-    assert (
-        dataset.describe_dataset("t", survey_file(tmp_path), **known).settings["simulate"]["seed"]
-        == 9
-    )
+def test_the_command_line_wins_over_the_file(known, describe, tmp_path):
+    given = known._replace(given=[settings.Layer("--config", {"simulate": {"seed": 9}})])
+    assert describe("t", survey_file(tmp_path), known=given).settings["simulate"]["seed"] == 9
 
 
-def test_a_building_may_be_any_file(known, tmp_path):
+def test_a_building_may_be_any_file(describe, tmp_path):
     model = tmp_path / "house.ifc"
     model.touch()
     path = survey_file(tmp_path, f"simulate: {{building: {model}}}")
-    assert dataset.describe_dataset("t", path, **known).building == str(model)
+    assert describe("t", path).building == str(model)
 
 
 @pytest.mark.parametrize(
@@ -100,29 +100,29 @@ def test_a_building_may_be_any_file(known, tmp_path):
         ),
     ],
 )
-def test_a_wrong_file_is_refused_in_one_line(known, tmp_path, text, said):
+def test_a_wrong_file_is_refused_in_one_line(describe, tmp_path, text, said):
     with pytest.raises(StageError, match=said) as caught:
-        dataset.describe_dataset("t", survey_file(tmp_path, text), **known)
+        describe("t", survey_file(tmp_path, text))
     assert "\n" not in str(caught.value)
 
 
-def test_a_missing_file_is_refused(known, tmp_path):
+def test_a_missing_file_is_refused(describe, tmp_path):
     with pytest.raises(StageError, match=r"none\.yaml: "):
-        dataset.describe_dataset("none", tmp_path / "none.yaml", **known)
+        describe("none", tmp_path / "none.yaml")
 
 
-def test_several_designs_in_a_folder_stop_no_plan(known, tmp_path):
+def test_several_designs_in_a_folder_stop_no_plan(describe, tmp_path):
     (tmp_path / "survey.bag").write_bytes(b"#ROSBAG V2.0")
     for design in ("a.dxf", "b.ifc"):
         (tmp_path / design).write_text("")
-    found = dataset.describe_dataset("a", tmp_path, **known)
+    found = describe("a", tmp_path)
     assert dataset.list_results(found) and len(found.designs) == 2
 
 
-def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
+def test_a_folder_brings_its_settings_and_its_truth(describe, tmp_path):
     (tmp_path / "a.bag").write_text("x")
     (tmp_path / "dataset.yaml").write_text("poses: {keep_every: 2}")
-    found = dataset.describe_dataset("a", tmp_path, **known)
+    found = describe("a", tmp_path)
     assert (found.recordings, found.truth, found.building) == (
         (str(tmp_path / "a.bag"),),
         None,
@@ -131,9 +131,9 @@ def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
     assert found.settings["poses"]["keep_every"] == 2
     half = tmp_path / "truth.geojson"
     half.touch()
-    found = dataset.describe_dataset("a", tmp_path, **known)
+    found = describe("a", tmp_path)
     assert found.truth is None and f"{half}: " in found.notes[0]
-    found = dataset.describe_dataset("a", tmp_path / "a.bag", **known)
+    found = describe("a", tmp_path / "a.bag")
     assert (
         found.settings["poses"]["keep_every"] == 5
         and "dataset.yaml and truth.geojson are not used" in found.notes[0]
@@ -141,7 +141,7 @@ def test_a_folder_brings_its_settings_and_its_truth(known, tmp_path):
     half.unlink()
     for name in ("truth.geojson", "truth_poses.tum"):
         (tmp_path / name).touch()
-    found = dataset.describe_dataset("a", tmp_path, **known)
+    found = describe("a", tmp_path)
     assert found.notes == () and found.source == str(tmp_path)
     assert found.truth == (str(tmp_path / "truth.geojson"), str(tmp_path / "truth_poses.tum"))
 
@@ -171,8 +171,8 @@ def test_a_comparison_adds_the_other_orderings_and_the_walls_of_all_scans():
 
 
 @pytest.mark.parametrize("name", ["ring_rooms", "ring_hallways"])
-def test_the_surveys_that_are_shipped_fit_the_schema(known, project_root, name):
-    found = dataset.describe_dataset(name, project_root / f"config/surveys/{name}.yaml", **known)
+def test_the_surveys_that_are_shipped_fit_the_schema(describe, project_root, name):
+    found = describe(name, project_root / f"config/surveys/{name}.yaml")
     assert found.settings["simulate"]["building"] == "ring_office"
 
 
@@ -185,6 +185,6 @@ def test_choices_are_what_the_schema_allows():
     ]
 
 
-def test_settings_of_a_recording_are_no_survey(tmp_path, known):
+def test_settings_of_a_recording_are_no_survey(tmp_path, describe):
     with pytest.raises(StageError, match=r"tiny\.yaml: .*`simulate`.*CONFIG"):
-        dataset.describe_dataset("t", survey_file(tmp_path, "poses: {keep_every: 1}"), **known)
+        describe("t", survey_file(tmp_path, "poses: {keep_every: 1}"))

@@ -7,13 +7,13 @@ import pytest
 
 from helpers import simple_rooms as drawn
 from scanplan.lab.buildings import extrusion
-from scanplan.lab.simulation import mirroring, ray_fates, raycast, scan_rays, sensor_models
+from scanplan.lab.simulation import mirroring, ray_fates, raycast, scan_rays, sensor_models, sensors
 from scanplan.lab.simulation.people import Person
 from scanplan.lab.simulation.sensor_errors import SensorErrors
 
 MESH = extrusion.make_building_mesh(drawn.plan())
 SENSOR = sensor_models.make_vlp16(
-    360, rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0
+    360, sensors.Turning(rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0)
 )
 AT_M = np.array([1.0, 1.0, 0.4])
 RAYS = scan_rays.ScanRays(np.zeros(360), np.tile(AT_M, (360, 1)), SENSOR.direction)

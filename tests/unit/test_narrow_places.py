@@ -5,7 +5,7 @@ import pytest
 import shapely
 from shapely import box
 
-from scanplan.geometry.narrow_places import find_narrow_places
+from scanplan.geometry.narrow_places import NarrowLimits, find_narrow_places
 
 LEFT = box(0, 0, 4, 4)
 RIGHT = box(4.2, 0, 8, 4)
@@ -15,9 +15,8 @@ IN_BOTH = np.array([[2.0, 2.0], [6.0, 2.0]])
 
 def find(*shapes, visited_m=IN_BOTH, gaps_m=(), max_width_m=1.5, min_area_m2=1.0):
     ground = shapely.union_all(shapes)
-    return find_narrow_places(
-        ground, visited_m, gaps_m, max_width_m=max_width_m, min_area_m2=min_area_m2, cell_m=0.05
-    )
+    limits = NarrowLimits(max_width_m, min_area_m2, cell_m=0.05)
+    return find_narrow_places(ground, visited_m, limits, gaps_m=gaps_m)
 
 
 def test_a_door_between_two_rooms_parts_them_where_it_is_narrowest():
@@ -178,7 +177,6 @@ def test_a_wall_between_two_doors_is_no_island_of_furniture(is_wall, n_lines):
     between = box(4, 0.5, 4.2, 3.5)
     ground = box(0, 0, 8, 4).difference(between)
     walls = between if is_wall else None
-    found = find_narrow_places(
-        *(ground, IN_BOTH, (), walls), max_width_m=1.5, min_area_m2=1.0, cell_m=0.05
-    )
+    limits = NarrowLimits(1.5, min_area_m2=1.0, cell_m=0.05)
+    found = find_narrow_places(ground, IN_BOTH, limits, walls=walls)
     assert len(found) == n_lines

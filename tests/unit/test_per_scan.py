@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,10 @@ def scans(tmp_path):
 @pytest.mark.parametrize("threads", [1, 2])
 def test_each_scan_is_worked_on_once_in_order(scans, threads):
     results = per_scan.map_scans(
-        first_point, scans, label="test", threads=threads, per_scan={4: {"shift": 0.5}}, factor=10
+        *(partial(first_point, factor=10), scans),
+        label="test",
+        threads=threads,
+        per_scan={4: {"shift": 0.5}},
     )
     assert results == [(i, i * 10 + 0.5 * (i == 4)) for i in range(0, 200, 2)]
 

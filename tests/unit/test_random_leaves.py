@@ -81,11 +81,11 @@ def test_doors_that_have_a_leaf_keep_it():
 def test_a_given_way_is_left_free_and_a_planned_one_goes_around(seed):
     way_m = [[1.0, 0.7], [1.0, 2.3], [1.6, 2.4]]
     site = load(*DOORS)
-    hung = hang(site, seed, waypoints_m=way_m)
+    hung = hang(site, seed, way=random_leaves.draw_way(way_m))
     building_route.check_way(way_m, hung.floor_m, hung.obstacles_m, "box")
     loose = hang(site, seed)
     planned = building_route.plan_building_route(
-        loose, "box.geojson", route="rooms", clearance_m=0.25, seed=seed
+        loose, "box.geojson", building_route.WaySettings("rooms", 0.25), seed=seed
     )
     assert shapely.LineString(planned.waypoints_m).distance(loose.obstacles_m) > 0.23
 
@@ -94,7 +94,7 @@ def test_a_room_behind_a_shut_door_is_not_visited():
     shut = drawn.door(1.0, 1.5, width_m=0.9, leaf="hinged", frame_m=0.05)
     for doors, n_visited in (((shut,), 1), ((shut, DOORS[1]), 2)):
         site = building_route.plan_building_route(
-            load(*doors), "box.geojson", route="rooms", clearance_m=0.25
+            load(*doors), "box.geojson", building_route.WaySettings("rooms", 0.25)
         )
         rooms = [values for _, values in site.truth if values["kind"] == "room"]
         assert sum(values["visited"] for values in rooms) == n_visited

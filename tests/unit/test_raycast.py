@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from helpers import simple_rooms as drawn
 from scanplan.lab.buildings import extrusion
-from scanplan.lab.simulation import raycast, rover, sensor_models
+from scanplan.lab.simulation import raycast, rover, sensor_models, sensors
 
 SIZE_M = np.array([4.0, 3.0, 2.5])
 MESH = extrusion.make_building_mesh(drawn.plan())
 DIRECTION = sensor_models.make_vlp16(
-    360, rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0
+    360, sensors.Turning(rate_hz=10.0, sweep=False, min_range_m=0.0, max_range_m=100.0)
 ).direction
 
 

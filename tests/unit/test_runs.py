@@ -26,7 +26,7 @@ def sort(occupied=(), free=(), occluded=(), until_m=None):
     occupied, free, occluded = (tuple(kind) for kind in kinds)
     until_m = free[0] if until_m is None else np.array(until_m)
     limits = {"span_m": (0.0, 0.95), "sill_m": SILL_M, "door_m": DOOR_M}
-    return runs.sort_into_columns(occupied, free, until_m, occluded, **limits)
+    return runs.sort_into_columns(runs.LineRays(occupied, free, until_m, occluded), **limits)
 
 
 def test_runs_end_where_positions_pause():

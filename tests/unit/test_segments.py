@@ -17,9 +17,8 @@ def cut(points, *, spare=None, others=(), normal=(1.0, 0.0), offset_m=2.0):
     """Cut the line x = 2 in a scan of these points, of spare ones on the line, and of others."""
     parts = [p for p in (points, spare, others) if p is not None and len(p)]
     scan = segments.view_scan(np.vstack([*parts, np.empty((0, 3))]), planar=False)
-    return segments.cut_line(
-        np.array(normal), offset_m, points, LIMITS, scan=scan, spare_xyz_m=spare
-    )
+    further = None if spare is None else segments.SparePoints(spare)
+    return segments.cut_line(np.array(normal), offset_m, points, LIMITS, scan=scan, spare=further)
 
 
 def test_segments_end_where_points_pause():
@@ -112,9 +111,8 @@ def test_the_normal_points_to_the_sensor_whatever_the_lines_sense(sign):
 def test_in_the_plane_spare_points_prolong_within_reach_and_no_farther():
     spare = upright([-0.06, 1.03, 1.06, 1.09, 1.12, 1.3], z=(0.5,))
     points = upright([0, 0.5, 1])
-    rows = segments.cut_line(
-        np.array([1.0, 0]), 2.0, points, LIMITS, spare_xyz_m=spare, reach_rad=0.05
-    )
+    spare = segments.SparePoints(spare, reach_rad=0.05)
+    rows = segments.cut_line(np.array([1.0, 0]), 2.0, points, LIMITS, spare=spare)
     # reach at the end: 0.05 hypot(2, 1) = 0.112 m; at the start 0.1 m, but the first step there is
     # more than half
     assert rows[0][:4] == pytest.approx((2, 0, 2, 1.09))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from helpers.exact_sensor import EXACT as EXACT_SETTINGS
-from scanplan.lab.simulation import sensor_errors, sensor_models
+from scanplan.lab.simulation import sensor_errors, sensor_models, sensors
 from scanplan.lab.simulation.raycast import RayHits
 
 EXACT = sensor_errors.SensorErrors(0.0, np.zeros(16, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
@@ -15,7 +15,7 @@ BIASED = sensor_errors.StatedErrors(**{**EXACT_SETTINGS, "bias_m": 0.005})
 
 def test_biases_belong_to_the_beam_and_to_the_specimen():
     sensor = sensor_models.make_vlp16(
-        8, rate_hz=10.0, sweep=True, min_range_m=0.3, max_range_m=100.0
+        8, sensors.Turning(rate_hz=10.0, sweep=True, min_range_m=0.3, max_range_m=100.0)
     )
     first, again, other = (
         sensor_errors.draw_sensor_errors(sensor, BIASED, seed=s).bias_m for s in (1, 1, 2)

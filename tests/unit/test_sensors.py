@@ -1,16 +1,18 @@
 """Directions and moments of one turn."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from scanplan.errors import StageError
 from scanplan.lab.simulation import sensor_models, sensors
 
-COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 100.0}
+COMMON = sensors.Turning(rate_hz=10.0, sweep=True, min_range_m=0.3, max_range_m=100.0)
 
 
 def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():
-    sensor = sensor_models.make_vlp16(4, **COMMON)
+    sensor = sensor_models.make_vlp16(4, COMMON)
     np.testing.assert_allclose(np.linalg.norm(sensor.direction, axis=2), 1, rtol=1e-6)
     elevation_deg = np.degrees(np.arcsin(sensor.direction[..., 2]))
     np.testing.assert_allclose(elevation_deg, np.tile(-15 + 2.0 * sensor.ring, (4, 1)), atol=1e-4)
@@ -22,15 +24,15 @@ def test_vlp16_has_its_sixteen_beams_and_turns_clockwise():
 
 def test_a_lidars_stamp_is_its_last_firing():
     np.testing.assert_allclose(
-        sensor_models.make_vlp16(4, **COMMON).time_s, [-0.075, -0.05, -0.025, 0]
+        sensor_models.make_vlp16(4, COMMON).time_s, [-0.075, -0.05, -0.025, 0]
     )
     np.testing.assert_array_equal(
-        sensor_models.make_vlp16(4, **{**COMMON, "sweep": False}).time_s, 0
+        sensor_models.make_vlp16(4, replace(COMMON, sweep=False)).time_s, 0
     )
 
 
 def test_a_lidar_of_any_beams():
-    sensor = sensors.make_lidar([-30.0, 10.0], 8, **COMMON)
+    sensor = sensors.make_lidar([-30.0, 10.0], 8, COMMON)
     assert sensor.direction.shape == (8, 2, 3) and sensor.increment_rad is None
     np.testing.assert_array_equal(sensor.ring, [0, 1])
     np.testing.assert_allclose(
@@ -45,7 +47,7 @@ def _left(azimuth_deg, elevation_deg):
 
 
 def test_a_laser_scanner_turns_anticlockwise_from_its_first_beam_at_the_stamp():
-    sensor = sensors.make_laser(271, 270.0, **COMMON)
+    sensor = sensors.make_laser(271, 270.0, COMMON)
     assert sensor.increment_rad == pytest.approx(np.radians(1.0))
     np.testing.assert_allclose(
         sensor.direction[[0, 135, 225], 0], [_left(-135, 0), [1, 0, 0], [0, 1, 0]], atol=1e-5
@@ -55,7 +57,7 @@ def test_a_laser_scanner_turns_anticlockwise_from_its_first_beam_at_the_stamp():
 
 
 def test_a_whole_turn_has_no_beam_twice():
-    sensor = sensors.make_laser(360, 360.0, **COMMON)
+    sensor = sensors.make_laser(360, 360.0, COMMON)
     np.testing.assert_allclose(
         sensor.direction[[0, 180, 359], 0], [[-1, 0, 0], [1, 0, 0], _left(179, 0)], atol=1e-5
     )
@@ -65,18 +67,18 @@ def test_a_whole_turn_has_no_beam_twice():
 @pytest.mark.parametrize(
     ("make", "changes"),
     [
-        (lambda **c: sensor_models.make_vlp16(0, **c), {}),
-        (lambda **c: sensors.make_lidar([], 8, **c), {}),
-        (lambda **c: sensors.make_laser(1, 270.0, **c), {}),
-        (lambda **c: sensors.make_laser(10, 400.0, **c), {}),
-        (lambda **c: sensor_models.make_vlp16(8, **c), {"max_range_m": 0.2}),
-        (lambda **c: sensor_models.make_vlp16(8, **c), {"min_range_m": -1.0}),
-        (lambda **c: sensor_models.make_vlp16(8, **c), {"rate_hz": 0.0}),
+        (lambda c: sensor_models.make_vlp16(0, c), {}),
+        (lambda c: sensors.make_lidar([], 8, c), {}),
+        (lambda c: sensors.make_laser(1, 270.0, c), {}),
+        (lambda c: sensors.make_laser(10, 400.0, c), {}),
+        (lambda c: sensor_models.make_vlp16(8, c), {"max_range_m": 0.2}),
+        (lambda c: sensor_models.make_vlp16(8, c), {"min_range_m": -1.0}),
+        (lambda c: sensor_models.make_vlp16(8, c), {"rate_hz": 0.0}),
     ],
 )
 def test_no_sensor(make, changes):
     with pytest.raises(ValueError, match="are no sensor"):
-        make(**{**COMMON, **changes})
+        make(replace(COMMON, **changes))
 
 
 @pytest.mark.parametrize(
@@ -85,16 +87,16 @@ def test_no_sensor(make, changes):
 def test_elevations_belong_to_a_lidar_alone(model, elevations_deg):
     with pytest.raises(StageError, match="elevations_deg"):
         sensor_models.make_sensor(
-            model, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0, **COMMON
+            model, COMMON, n_azimuth=8, elevations_deg=elevations_deg, field_deg=270.0
         )
 
 
 @pytest.mark.parametrize("field_deg", [90.0, 270.0, 359.0, 360.0])
 def test_a_laser_knows_its_field(field_deg):
-    assert np.degrees(sensors.make_laser(181, field_deg, **COMMON).field_rad) == pytest.approx(
+    assert np.degrees(sensors.make_laser(181, field_deg, COMMON).field_rad) == pytest.approx(
         field_deg, abs=1e-3
     )
-    assert sensor_models.make_vlp16(8, **COMMON).field_rad == 2 * np.pi
+    assert sensor_models.make_vlp16(8, COMMON).field_rad == 2 * np.pi
 
 
 def elevations_deg(sensor):
@@ -103,7 +105,7 @@ def elevations_deg(sensor):
 
 def make(model, n_azimuth=900):
     return sensor_models.make_sensor(
-        model, n_azimuth=n_azimuth, elevations_deg=None, field_deg=270.0, **COMMON
+        model, COMMON, n_azimuth=n_azimuth, elevations_deg=None, field_deg=270.0
     )
 
 

@@ -17,10 +17,10 @@ from scanplan.lab.simulation import (
     spurious_returns,
 )
 
-COMMON = {"rate_hz": 10.0, "sweep": False, "min_range_m": 0.2, "max_range_m": 50.0}
+COMMON = sensors.Turning(rate_hz=10.0, sweep=False, min_range_m=0.2, max_range_m=50.0)
 EXACT = sensor_errors.SensorErrors(0.0, np.zeros(1, np.float32), 0.0, np.pi / 2, 1.0, 0.0)
 # 0.05 degrees from ray to ray, looking along x
-FINE = sensors.make_laser(3601, 180.0, **COMMON)
+FINE = sensors.make_laser(3601, 180.0, COMMON)
 
 
 def wall_at(x_m, low_y_m, high_y_m):
@@ -151,7 +151,7 @@ def test_a_polished_floor_loses_returns_at_grazing_incidence(from_deg, angle_deg
     surface = np.where(is_floor, extrusion.SURFACES.index("polished"), mesh.surface)
     polished = dataclasses.replace(mesh, surface=surface.astype(np.uint8))
     # rays that meet the floor at this angle to its normal, from 0.4 m
-    sensor = sensors.make_lidar([angle_deg - 90.0], 2000, **COMMON)
+    sensor = sensors.make_lidar([angle_deg - 90.0], 2000, COMMON)
     errors = dataclasses.replace(EXACT, polished_from_rad=np.radians(from_deg))
     shares = [
         np.isinf(returns(polished, errors, sensor, at_m=(2.0, 1.5, 0.2), seed=s).range_m).mean()
@@ -163,7 +163,7 @@ def test_a_polished_floor_loses_returns_at_grazing_incidence(from_deg, angle_deg
 
 def test_every_key_at_its_default_changes_no_hit():
     mesh = extrusion.make_building_mesh(drawn.plan())
-    sensor = sensor_models.make_vlp16(90, **COMMON)
+    sensor = sensor_models.make_vlp16(90, COMMON)
     opaque, _ = raycast.RayScene(mesh).first_hits(
         np.tile([1.0, 1.0, 0.4], (90, 1)), sensor.direction
     )

@@ -8,7 +8,6 @@ from dataclasses import MISSING, fields
 
 import pytest
 
-from build_hulls import build_hulls
 from helpers.default_settings import SCHEMA, SETTINGS
 from interpolate_poses import interpolate_poses
 from measure_crispness import measure_crispness
@@ -19,7 +18,7 @@ from scanplan.plan import planning
 from scanplan.project import stage_settings
 from scanplan.project.settings_schema import iterate_keys, list_choices
 from scanplan.registration.registration_settings import registration_settings
-from scanplan.selection import methods, wall_cells
+from scanplan.selection import hulls, methods, wall_cells
 from scanplan.validation import prediction
 from scanplan.visit import next_visit
 from simulate_survey import simulate_survey
@@ -128,7 +127,7 @@ def keywords(stage):
     ("stage", "selected", "others"),
     [
         (measure_crispness, stage_settings.select_crispness(SETTINGS), set()),
-        (build_hulls, stage_settings.select_hulls(SETTINGS), {"threads", "chunk"}),
+        (hulls.make_cluster_hulls, stage_settings.select_hulls(SETTINGS), set()),
         (interpolate_poses, stage_settings.select_section(SETTINGS, "poses"), {"moved", "made_of"}),
     ],
 )

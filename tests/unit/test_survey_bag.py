@@ -25,8 +25,8 @@ MD5 = {
 }
 T_NS = survey_bag.EPOCH_NS + np.array([0, 100_000_000, 200_000_000])
 POSES = rover.planar_poses([[1, 2], [1.5, 2], [1.5, 2.5]], [0.0, 0.0, np.pi / 2])
-COMMON = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.3, "max_range_m": 30.0}
-LIDAR, LASER = sensor_models.make_vlp16(4, **COMMON), sensors.make_laser(5, 180.0, **COMMON)
+COMMON = sensors.Turning(rate_hz=10.0, sweep=True, min_range_m=0.3, max_range_m=30.0)
+LIDAR, LASER = sensor_models.make_vlp16(4, COMMON), sensors.make_laser(5, 180.0, COMMON)
 
 
 def scan_of(n_returns, shape=(4, 16)):

@@ -19,7 +19,7 @@ MOUNT = rover.mount_sensor(height_m=0.4, forward_m=0.1, yaw_deg=0.0)
 
 def vlp16(n_azimuth=360, **changes):
     common = {"rate_hz": 10.0, "sweep": True, "min_range_m": 0.0, "max_range_m": 100.0}
-    return sensor_models.make_vlp16(n_azimuth, **{**common, **changes})
+    return sensor_models.make_vlp16(n_azimuth, sensors.Turning(**{**common, **changes}))
 
 
 def survey(sensor=None, errors=EXACT, t_s=(1.0,), people=(), seed=0, mesh=MESH):
@@ -36,7 +36,7 @@ def only(**given):
 
 def test_every_column_is_cast_from_where_the_sensor_is_at_its_moment():
     sensor = sensors.make_lidar(
-        [0.0], 4, rate_hz=10.0, sweep=True, min_range_m=0.0, max_range_m=100.0
+        [0.0], 4, sensors.Turning(rate_hz=10.0, sweep=True, min_range_m=0.0, max_range_m=100.0)
     )
     errors = dataclasses.replace(EXACT, bias_m=np.zeros(1, np.float32))
     # the last column fires at the stamp, the first 75 ms before; forward, right, back, left

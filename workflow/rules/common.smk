@@ -71,6 +71,7 @@ from scanplan.project.run.foreign_settings import keep_figures_ours
 from scanplan.project.run.terminal import tell
 from scanplan.project.run_note import write_note
 from scanplan.project.settings import (
+    KnownSettings,
     Layer,
     locate_fault,
     read_defaults,
@@ -117,27 +118,29 @@ def given_settings():
     return [*layers, alone]
 
 
-KNOWN = {
-    "defaults": or_end(read_defaults, f"{PROJECT}/config/config.yaml", SCHEMA),
-    "given": or_end(given_settings),
-    "schema": SCHEMA,
-}
-RUN = or_end(settings_of_run, *KNOWN.values())
+KNOWN = KnownSettings(
+    defaults=or_end(read_defaults, f"{PROJECT}/config/config.yaml", SCHEMA),
+    given=or_end(given_settings),
+    schema=SCHEMA,
+)
+RUN = or_end(settings_of_run, *KNOWN)
 
 
 def given_datasets():
     """The datasets that the user gave, by name; the simulated demo where none is given."""
     drawings = f"{PROJECT}/config/buildings"
-    usual = settings_of_dataset(*KNOWN.values())
+    usual = settings_of_dataset(*KNOWN)
     return {
-        name: describe_dataset(name, path, drawings=drawings, usual=usual, **KNOWN)
+        name: describe_dataset(name, path, KNOWN, drawings=drawings, usual=usual)
         for name, path in name_datasets(RUN["dataset"]).items()
     }
 
 
 def further_surveys():
     """The surveys of the laboratory, by kind."""
-    return LABORATORY.list_wanted(sys.argv[1:], config=f"{PROJECT}/config", **KNOWN)
+    return LABORATORY.list_wanted(
+        sys.argv[1:], config=f"{PROJECT}/config", **KNOWN._asdict()
+    )
 
 
 def given_targets():

@@ -214,7 +214,7 @@ onsuccess:
         storeys = BUILDING.storeys if BUILDING else ()
         together = [GIVEN[storey.dataset].source for storey in storeys]
         for name, dataset in GIVEN.items():
-            or_end(write_note, name, dataset.source, together, KNOWN["given"])
+            or_end(write_note, name, dataset.source, together, KNOWN.given)
     tell_results()
     tell_overview()
     if optional_stages.read_left_out():

@@ -133,11 +133,9 @@ def read_given(
     own = [Layer("settings", dict(settings or {}))]
     complete = settings_of_dataset(default_settings(schema), own, schema)
     stamps = _read_stamps(t_ns, len(scans))
-    limits = {key: complete["input"][key] for key in ("min_range_m", "max_range_m")}
+    limits = clouds.RangeLimits(complete["input"]["min_range_m"], complete["input"]["max_range_m"])
     read = [
-        clouds.keep_in_range(
-            number, int(stamps[number]), _read_points(number, scan), None, **limits
-        )
+        clouds.keep_in_range(number, int(stamps[number]), _read_points(number, scan), None, limits)
         for number, scan in enumerate(scans)
     ]
     planar = clouds.are_scans_planar(scan.xyz_m for scan in read)

@@ -112,8 +112,7 @@ def extract_by_clusters(
                 wall.facing_xyz_m,
                 settings,
                 scan=scan,
-                spare_xyz_m=wall.spare_xyz_m,
-                reach_rad=reach_rad,
+                spare=segments.SparePoints(wall.spare_xyz_m, reach_rad),
             )
             rows += wall_rows
             # twice as wide as what belongs to them, else noise leaves a second wall beside them

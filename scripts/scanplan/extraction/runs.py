@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -139,11 +140,26 @@ def extend_run_ends(
     return ends
 
 
+class LineRays(NamedTuple):
+    """The rays of one scan at a line.
+
+    Attributes
+    ----------
+    occupied, free, occluded : face_raster.Places
+        Where rays end at the line, go through it, and would have met it.
+    free_until_m : (n,) float
+        Until where along the line each ray through leaves the thinnest wall: columns up to there
+        are free, too.
+    """
+
+    occupied: Places
+    free: Places
+    free_until_m: FloatArray
+    occluded: Places
+
+
 def sort_into_columns(
-    occupied: Places,
-    free: Places,
-    free_until_m: FloatArray,
-    occluded: Places,
+    rays: LineRays,
     *,
     span_m: tuple[float, float],
     sill_m: float,
@@ -153,11 +169,6 @@ def sort_into_columns(
 
     Parameters
     ----------
-    occupied, free, occluded : face_raster.Places
-        Where rays end at the line, go through it, and would have met it.
-    free_until_m : (n,) float
-        Until where along the line each ray through leaves the thinnest wall: columns up to there
-        are free, too.
     span_m : (float, float)
         From where to where; rays beyond count for the first and the last column.
     sill_m : float
@@ -165,6 +176,7 @@ def sort_into_columns(
     door_m : float
         What is higher says nothing of what is below.
     """
+    occupied, free, free_until_m, occluded = rays
     n_columns = int((span_m[1] - span_m[0]) / SCAN_COLUMN_M) + 1
     top_row = np.full(n_columns, -1)
     low, row = _low_rows(occupied[1], 0.0, door_m)
@@ -191,11 +203,14 @@ def _look_at_columns(
     (occluded,) = np.nonzero(face.is_occluded)
     free_m = face.along_m.take(free)
     slope = (free_m - face.views.sensor_along_m) / np.abs(face.views.side_m)
+    rays = LineRays(
+        occupied=(where_m, height_m),
+        free=(free_m, face.height_m.take(free)),
+        free_until_m=free_m + slope * ON_M,
+        occluded=(face.along_m.take(occluded), face.height_m.take(occluded)),
+    )
     return sort_into_columns(
-        (where_m, height_m),
-        (free_m, face.height_m.take(free)),
-        free_m + slope * ON_M,
-        (face.along_m.take(occluded), face.height_m.take(occluded)),
+        rays,
         span_m=span_m,
         sill_m=limits.min_height_m,
         door_m=limits.door_height_m,

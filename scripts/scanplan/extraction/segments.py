@@ -5,6 +5,7 @@ A wall segment is a part of a vertical plane, seen from one side, as a line in t
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -55,6 +56,23 @@ def view_scan(xyz_m: FloatArray, *, planar: bool) -> RaySet | None:
     return gather_rays([(0, xyz_m)], {0: np.zeros(3)}, planar=False)
 
 
+class SparePoints(NamedTuple):
+    """Points near a line that make no segment: of none of them is the normal clear.
+
+    They lie at a corner, and in a narrow strip above furniture.
+
+    Attributes
+    ----------
+    xyz_m : (m, 3) float
+        Relative to the sensor.
+    reach_rad : float
+        In the plane: how far, as an angle seen from the sensor, they may prolong a segment.
+    """
+
+    xyz_m: FloatArray
+    reach_rad: float = 0.0
+
+
 def cut_line(
     normal: FloatArray,
     offset_m: float,
@@ -62,8 +80,7 @@ def cut_line(
     limits: SegmentLimits,
     *,
     scan: RaySet | None = None,
-    spare_xyz_m: FloatArray | None = None,
-    reach_rad: float = 0.0,
+    spare: SparePoints | None = None,
 ) -> list[Row]:
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
@@ -81,11 +98,7 @@ def cut_line(
         Points on the line, relative to the sensor.
     scan : ray_set.RaySet, optional
         Of all points of the scan; None in the plane.
-    spare_xyz_m : (m, 3) float, optional
-        Further points near the line, that make no segment: at a corner and in a narrow strip above
-        furniture none has a clear normal.
-    reach_rad : float
-        In the plane: how far, as an angle seen from the sensor, spare points may prolong a segment.
+    spare : SparePoints, optional
 
     Returns
     -------
@@ -94,7 +107,8 @@ def cut_line(
     """
     sign = -1.0 if offset_m > 0 else 1.0  # towards the sensor, which is the origin
     line = Line(offset_m * normal, sign * normal)
-    every = xyz_m if spare_xyz_m is None else np.vstack([xyz_m, spare_xyz_m])
+    every = xyz_m if spare is None else np.vstack([xyz_m, spare.xyz_m])
+    reach_rad = 0.0 if spare is None else spare.reach_rad
     where_m = every[:, :2] @ line.direction
     n_own = len(xyz_m)
     if scan is None:

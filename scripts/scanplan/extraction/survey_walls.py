@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterable, Mapping
+from functools import partial
 
 from scanplan.errors import StageError
 from scanplan.extraction import known_segments, map_tilt, segments
@@ -66,14 +67,16 @@ def write_survey_walls(
     sensors = sensor_keywords(store.scan_ids, scans, registration)
     earlier = known_segments.KnownSegments(known)
     found = map_scans(
-        known_segments.find_unknown_segments,
+        partial(
+            known_segments.find_unknown_segments,
+            recipe=known_segments.digest_recipe(extractor, settings, code),
+            finder=make_wall_finder(EXTRACTORS[extractor], settings, planar=store.planar),
+        ),
         scans,
         label=f"{stage} {extractor}",
         threads=threads,
         scan_ids=wanted,
         per_scan={i: {**sensors[i], "known": earlier.list_digests(i)} for i in wanted.tolist()},
-        recipe=known_segments.digest_recipe(extractor, settings, code),
-        finder=make_wall_finder(EXTRACTORS[extractor], settings, planar=store.planar),
     )
     told = NO_DOUBT if store.planar else _tell_tilt(stage, store, sensors)
     columns = earlier.complete(wanted, found)

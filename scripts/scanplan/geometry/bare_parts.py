@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -14,14 +15,30 @@ from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 
+@dataclass(frozen=True)
+class MouthLimits:
+    """Where ground may be cut.
+
+    Attributes
+    ----------
+    max_walled : float, 0 to 1
+        A part with a larger share of its outline along walls stays.
+    beside_m : float, >= 0
+        How far from walls a mouth may begin or end.
+    step_m : float, > 0
+        What places along the outline are apart, at most.
+    """
+
+    max_walled: float
+    beside_m: float
+    step_m: float
+
+
 def cut_bare_parts(
     ground: Polygon,
     walled: BaseGeometry,
     visited: BaseGeometry,
-    *,
-    max_walled: float,
-    beside_m: float,
-    step_m: float,
+    limits: MouthLimits,
 ) -> list[Polygon]:
     """Cut ground at the mouths of parts that nobody was in, and whose outline is bare.
 
@@ -39,12 +56,6 @@ def cut_bare_parts(
         Ground before walls, which outlines along walls lie in.
     visited : shapely geometry
         Ways or places where somebody was.
-    max_walled : float, 0 to 1
-        A part with a larger share of its outline along walls stays.
-    beside_m : float, >= 0
-        How far from walls a mouth may begin or end.
-    step_m : float, > 0
-        What places along the outline are apart, at most.
 
     Returns
     -------
@@ -52,12 +63,12 @@ def cut_bare_parts(
         What is left: of several parts those that somebody was in, or else the largest; none where
         all of it is bare.
     """
-    near = overlays.buffer_shapes(walled, beside_m)
+    near = overlays.buffer_shapes(walled, limits.beside_m)
     shapely.prepare([walled, near, visited])
     rest, whole = [ground], []
     while rest:
         polygon = rest.pop()
-        bare = list(_find_bare_parts(polygon, walled, near, visited, max_walled, beside_m, step_m))
+        bare = list(_find_bare_parts(polygon, walled, near, visited, limits))
         left = overlays.subtract_areas(polygon, overlays.unite_areas(bare), grid=SHORTEST_M)
         if left.area < polygon.area - SHORTEST_M:
             rest += take_visited(left, visited)
@@ -109,14 +120,13 @@ def _find_bare_parts(
     walled: BaseGeometry,
     near: BaseGeometry,
     visited: BaseGeometry,
-    max_walled: float,
-    beside_m: float,
-    step_m: float,
+    limits: MouthLimits,
 ) -> Iterator[Polygon]:
     """Yield bare parts of ground that do not overlap, those that are worth most first.
 
     `near` is where mouths may begin and end.
     """
+    max_walled, step_m = limits.max_walled, limits.step_m
     ring = shapely.orient_polygons(ground).exterior
     places_m = shapely.get_coordinates(shapely.segmentize(ring, step_m))[:-1]
     steps_m = np.roll(places_m, -1, axis=0) - places_m
@@ -141,7 +151,7 @@ def _find_bare_parts(
     holes = [
         hole
         for hole in ground.interiors
-        if walled_share(hole, walled) > max_walled and not _is_narrow(hole, beside_m)
+        if walled_share(hole, walled) > max_walled and not _is_narrow(hole, limits.beside_m)
     ]
     inner = overlays.buffer_shapes(Polygon(ground.exterior, holes), SHORTEST_M)
     shapely.prepare(inner)

@@ -7,6 +7,7 @@ narrow place is one that is narrow beside what it parts on either side.
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -22,15 +23,32 @@ from scanplan.geometry.watershed import NARROWER, find_borders, flood_cells, lis
 from scanplan.types import FloatArray
 
 
+@dataclass(frozen=True)
+class NarrowLimits:
+    """What is narrow.
+
+    Attributes
+    ----------
+    max_width_m : float, > 0
+        Of lines that are no gaps.
+    min_area_m2 : float, >= 0
+        No less lies on a visited side, nor less than furniture parts off on another.
+    cell_m : float, > 0
+        Of the distances: a fraction of the width.
+    """
+
+    max_width_m: float
+    min_area_m2: float
+    cell_m: float
+
+
 def find_narrow_places(
     ground: BaseGeometry,
     visited_m: FloatArray,
+    limits: NarrowLimits,
+    *,
     gaps_m: Sequence[FloatArray] = (),
     walls: BaseGeometry | None = None,
-    *,
-    max_width_m: float,
-    min_area_m2: float,
-    cell_m: float,
 ) -> list[FloatArray]:
     """Find where ground is narrower than on both sides, and no wider than a given width.
 
@@ -47,19 +65,13 @@ def find_narrow_places(
         Lines across ground that may part it however wide they are, if it is wider on both sides.
     walls : shapely geometry, optional
         Where walls stand that are no furniture.
-    max_width_m : float, > 0
-        Of other lines.
-    min_area_m2 : float, >= 0
-        No less lies on a visited side, nor less than furniture parts off on another.
-
-    cell_m : float, > 0
-        Of the distances: a fraction of the width.
 
     Returns
     -------
     list of (2, 2) float64
         The shortest lines across, from outline to outline.
     """
+    max_width_m, cell_m = limits.max_width_m, limits.cell_m
     filled = _fill_islands(ground, shapely.MultiPolygon() if walls is None else walls)
     if filled.is_empty:
         return []
@@ -86,7 +98,7 @@ def find_narrow_places(
         if not is_passed or _widens_on_both_sides(near, line):
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
-    return part_enough(filled, lines, visited_m, min_area_m2, sliver_m=4 * cell_m)
+    return part_enough(filled, lines, visited_m, limits.min_area_m2, sliver_m=4 * cell_m)
 
 
 def _choose_gaps(

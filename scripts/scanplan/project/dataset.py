@@ -27,8 +27,7 @@ from scanplan.project import (
     user_file,
     words_file,
 )
-from scanplan.project.settings import Layer, read_own_layers, settings_of_dataset
-from scanplan.project.settings_schema import Schema
+from scanplan.project.settings import KnownSettings, Layer, read_own_layers, settings_of_dataset
 
 if TYPE_CHECKING:
     from scanplan.types import FilePath, Settings
@@ -162,10 +161,8 @@ def _list_named(given: FilePath | list[FilePath]) -> Iterator[tuple[str, str]]:
 def describe_dataset(
     name: str,
     path: FilePath | None,
+    known: KnownSettings,
     *,
-    defaults: Settings,
-    given: Sequence[Layer],
-    schema: Schema,
     drawings: FilePath,
     usual: Settings | None = None,
 ) -> Dataset:
@@ -175,10 +172,6 @@ def describe_dataset(
     ----------
     path : path-like or None
         A folder, a recording or the file of a simulated survey; the demo if None.
-    defaults, schema : dict
-        See `settings.settings_of_dataset`.
-    given : sequence of settings.Layer
-        The command line's settings.
     drawings : path-like
         The folder of the drawings that settings may name.
     usual : dict, optional
@@ -195,10 +188,10 @@ def describe_dataset(
         If files or settings are missing or wrong.
     """
     own = _read_own_settings(path)
-    layers = (*own, *given)
+    layers = (*own, *known.given)
     source = provenance.identify_source(path)
     if own or usual is None:
-        settings = settings_of_dataset(defaults, layers, schema)
+        settings = settings_of_dataset(known.defaults, layers, known.schema)
     else:
         settings = dict(usual)
     export = settings["plan"]["export"]

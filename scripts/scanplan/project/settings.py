@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from scanplan.errors import StageError
 from scanplan.project import export_formats
@@ -50,6 +50,24 @@ class Layer:
 
     origin: str
     values: dict[str, Any]
+
+
+class KnownSettings(NamedTuple):
+    """What settings are made of beside a dataset's own.
+
+    Attributes
+    ----------
+    defaults : dict
+        See `read_defaults`.
+    given : sequence of Layer
+        The command line's.
+    schema : dict
+        What all must fit.
+    """
+
+    defaults: Settings
+    given: Sequence[Layer]
+    schema: Schema
 
 
 def merge_settings(base: Settings, over: Settings) -> dict[str, Any]:

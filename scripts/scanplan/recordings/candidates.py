@@ -130,50 +130,58 @@ def pose_columns(
     }
 
 
+def log_jumps(edges: Sequence[FrameEdge], where: str, *, max_speed_m_s: float) -> None:
+    """Log how often poses jump.
+
+    Parameters
+    ----------
+    edges : list of frame_edges.FrameEdge
+        The poses.
+    where : str
+        The dataset.
+    max_speed_m_s : float
+        Of the interpolation.
+    """
+    n_jumps = sum(
+        int(pose_jumps.find_jumps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s).sum())
+        for edge in edges
+        if edge.t_ns is not None
+    )
+    if n_jumps:
+        log.log_line(
+            f"{where}: the poses jump {n_jumps} times by more than {pose_jumps.LEAST_M} m:"
+            " no pose in between"
+        )
+
+
 def require_poses(
-    chosen: IntArray,
+    is_covered: BoolArray,
     t_ns: IntArray,
-    covered: BoolArray,
     edges: Sequence[FrameEdge],
     where: str,
     *,
     max_gap_s: float,
-    max_speed_m_s: float,
 ) -> None:
-    """Log how often the poses jump, and refuse scans of which no chosen one has a pose.
+    """Refuse scans of which no chosen one has a pose.
 
     Parameters
     ----------
-    chosen : (m,) int64
+    is_covered : (m,) bool
+        Whether each chosen scan has one.
     t_ns : (n,) int64
         Stamps of all scans.
-    covered : (n,) bool
-        Whether each has a pose.
-    edges : list of frame_edges.FrameEdge
-        The poses.
-    where : str
-        The dataset, for the error.
-    max_gap_s, max_speed_m_s : float
-        Limits of the interpolation.
+    edges, where
+        As of `log_jumps`.
+    max_gap_s : float
+        Of the interpolation.
 
     Raises
     ------
     StageError
         If none has one.
     """
-    n_jumps = 0
-    spans = []
-    for edge in edges:
-        if edge.t_ns is not None:
-            jumping = pose_jumps.find_jumps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
-            n_jumps += int(jumping.sum())
-            spans.append(_format_span(edge.t_ns))
-    if n_jumps:
-        log.log_line(
-            f"{where}: the poses jump {n_jumps} times by more than {pose_jumps.LEAST_M} m:"
-            " no pose in between"
-        )
-    if not covered[chosen].any():
+    if not is_covered.any():
+        spans = [_format_span(edge.t_ns) for edge in edges if edge.t_ns is not None]
         raise StageError(
             f"{where}: no scan has poses within {max_gap_s} s around it: clouds"
             f" {_format_span(t_ns)}, poses {', '.join(spans)}; {_advise(t_ns, edges)}"

@@ -4,6 +4,7 @@ import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 
@@ -44,11 +45,17 @@ class Scan:
     digest: int = 0
 
 
-def is_in_range(xyz_m: FloatArray, *, min_range_m: float, max_range_m: float) -> BoolArray:
-    """Return which points (n, 3) are finite and within the sensor's range limits: (n,) bool."""
-    squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
-    # a comparison with NaN is false: this also drops what is not finite
-    return (squared >= min_range_m**2) & (squared <= max_range_m**2)
+class RangeLimits(NamedTuple):
+    """How near and how far a sensor's points may be."""
+
+    min_range_m: float
+    max_range_m: float
+
+    def include(self, xyz_m: FloatArray) -> BoolArray:
+        """Return which points (n, 3), sensor frame, are finite and within the limits: (n,) bool."""
+        squared = np.einsum("ij,ij->i", xyz_m, xyz_m, dtype=np.float64)
+        # a comparison with NaN is false: this also drops what is not finite
+        return (squared >= self.min_range_m**2) & (squared <= self.max_range_m**2)
 
 
 def keep_in_range(
@@ -56,9 +63,8 @@ def keep_in_range(
     t_ns: int,
     xyz_m: FloatArray,
     time_raw: Array | None,
+    limits: RangeLimits,
     *,
-    min_range_m: float,
-    max_range_m: float,
     sweep_times: point_times.TimeConvention | None = None,
 ) -> Scan:
     """Keep the points that are finite and within the range limits of the sensor, with their times.
@@ -76,8 +82,7 @@ def keep_in_range(
     -------
     Scan
     """
-    in_range = is_in_range(xyz_m, min_range_m=min_range_m, max_range_m=max_range_m)
-    rows = np.flatnonzero(in_range)
+    rows = np.flatnonzero(limits.include(xyz_m))
     time_s = None
     if time_raw is not None and sweep_times is not None:
         time_s = sweep_times.seconds(time_raw, t_ns).take(rows)

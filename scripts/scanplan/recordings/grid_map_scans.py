@@ -9,7 +9,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -18,10 +18,11 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import yaml_file
 from scanplan.recordings import frame_edges
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.motion import point_times
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import PosedScans
-from scanplan.recordings.units import IN_METRES, Units
+from scanplan.recordings.units import IN_METRES
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
 _BEAMS = 720  # half a degree: a cell of 5 cm at 6 m
@@ -58,9 +59,8 @@ class GridMapScans(PosedScans):
     ----------
     files : sequence of str
         The map's .yaml and its image.
-    units : units.Units, optional
-    **reading
-        Keywords of `posed_scans.PosedScans`; by default the poses are exact.
+    reading : CloudReading
+        By default the poses are exact.
 
     Raises
     ------
@@ -68,9 +68,9 @@ class GridMapScans(PosedScans):
         If they are no map, or show too little free floor.
     """
 
-    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
+    def __init__(self, files: Sequence[str], reading: CloudReading) -> None:
         path = next(Path(file) for file in files if file.endswith((".yaml", ".yml")))
-        if units != IN_METRES:
+        if reading.units != IN_METRES:
             raise StageError(
                 f"{path}: a grid map states its resolution in metres; leave out"
                 " advanced.input.cloud_unit and advanced.input.pose_unit"
@@ -89,7 +89,7 @@ class GridMapScans(PosedScans):
         track = frame_edges.FrameEdge(
             "map", "sensor", *se3.split_pose(self._grid.map_from_grid @ poses), stamps_ns
         )
-        super().__init__(str(path), track, stamps_ns, STATIONS, **reading)
+        super().__init__(str(path), track, stamps_ns, STATIONS, reading)
         self._xy_m = xy_m
 
     def describe_rays(self) -> list[str]:

@@ -2,17 +2,17 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_entries
 from scanplan.recordings import frame_edges, map_origin, trajectory_file
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.las_points import LasBlock, list_blocks
 from scanplan.recordings.motion.pose_kind import LOCALISER
 from scanplan.recordings.posed_scans import UntimedScans
-from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -56,9 +56,8 @@ class LasDrive(UntimedScans):
     ----------
     files : sequence of str
         The clouds, and the trajectory.
-    units : units.Units, optional
-    **reading
-        Keywords of `posed_scans.PosedScans`; by default the poses are a localiser's.
+    reading : CloudReading
+        By default the poses are a localiser's.
 
     Raises
     ------
@@ -66,13 +65,13 @@ class LasDrive(UntimedScans):
         If a file is damaged, its points have no time, or the trajectory is of another time.
     """
 
-    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
-        self._unit_m = units.cloud_m
+    def __init__(self, files: Sequence[str], reading: CloudReading) -> None:
+        self._unit_m = reading.units.cloud_m
         paths = [Path(file) for file in files]
         path = next(filter(dataset_entries.is_trajectory, paths))
         clouds = [file for file in paths if not dataset_entries.is_trajectory(file)]
         time_s, xyz_m = trajectory_file.read_trajectory(path)
-        xyz_m = units.pose_m * xyz_m
+        xyz_m = reading.units.pose_m * xyz_m
         xyz_m = xyz_m - (origin_m := map_origin.find_origin(str(path), xyz_m))
         blocks = [block for cloud in clouds for block in list_blocks(cloud)]
         self._slicing = _find_clock(blocks, time_s, path)
@@ -86,7 +85,7 @@ class LasDrive(UntimedScans):
         t_ns, first = np.unique(_to_ns(time_s[0], time_s - time_s[0]), return_index=True)
         level = np.tile([0.0, 0.0, 0.0, 1.0], (len(t_ns), 1))
         track = frame_edges.FrameEdge("map", "sensor", xyz_m[first], level, t_ns)
-        super().__init__(str(path), track, stamps_ns, LOCALISER, **reading)
+        super().__init__(str(path), track, stamps_ns, LOCALISER, reading)
         self._asked = np.arange(len(stamps_ns))
         self._waiting: dict[int, FloatArray] = {}
 

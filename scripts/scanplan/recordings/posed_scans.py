@@ -7,6 +7,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from scanplan.recordings import clouds, frame_edges
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import lidar_odometry, point_times
@@ -28,10 +29,6 @@ class PosedScans(ABC):
         Of the clouds, in scan_id order.
     found_kind : str
         Of which kind the poses are where the settings do not say: see `pose_kind`.
-    base_from_sensor : (6,) float or None
-        x, y, z in metres, roll, pitch, yaw in degrees; by default the poses are the sensor's own.
-    max_damaged_share : float
-        Of the clouds that are read.
     """
 
     def __init__(
@@ -40,23 +37,17 @@ class PosedScans(ABC):
         track: frame_edges.FrameEdge,
         stamps_ns: IntArray,
         found_kind: str,
-        *,
-        base_from_sensor: Sequence[float] | None,
-        min_range_m: float,
-        max_range_m: float,
-        max_damaged_share: float = 0.0,
-        pose_kind: str = FOUND,
+        reading: CloudReading,
     ) -> None:
         self.where = where
         self._track = track
         self._stamps_ns = stamps_ns
-        self._extrinsics = (
-            [] if base_from_sensor is None else configured_extrinsics(base_from_sensor)
-        )
-        self._max_damaged_share = max_damaged_share
-        self._damaged = DamagedClouds(0, max_damaged_share)
-        self._pose_kind = found_kind if pose_kind == FOUND else pose_kind
-        self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
+        mounting = reading.base_from_sensor
+        self._extrinsics = [] if mounting is None else configured_extrinsics(mounting)
+        self._max_damaged_share = reading.max_damaged_share
+        self._damaged = DamagedClouds(0, reading.max_damaged_share)
+        self._pose_kind = found_kind if reading.pose_kind == FOUND else reading.pose_kind
+        self._limits = reading.limits
 
     @abstractmethod
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
@@ -99,7 +90,7 @@ class PosedScans(ABC):
         xyz_m, time_raw = self.read_cloud(scan_id)
         if time_raw is None:
             return None
-        return np.asarray(time_raw)[clouds.is_in_range(xyz_m, **self._limits)]
+        return np.asarray(time_raw)[self._limits.include(xyz_m)]
 
     @property
     def pose_kind(self) -> str:
@@ -167,7 +158,7 @@ class PosedScans(ABC):
         xyz_m, time_raw = self.read_cloud(scan_id)
         stamp_ns = self._stamps_ns[scan_id]
         return clouds.keep_in_range(
-            scan_id, stamp_ns, xyz_m, time_raw, sweep_times=sweep_times, **self._limits
+            scan_id, stamp_ns, xyz_m, time_raw, self._limits, sweep_times=sweep_times
         )
 
 

@@ -21,13 +21,13 @@ from scanplan.recordings import (
     topics,
 )
 from scanplan.recordings.bags import Bag, BagMessage
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.extrinsics import configured_extrinsics
 from scanplan.recordings.frame_edges import FrameEdge
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import lidar_odometry, point_times
 from scanplan.recordings.motion.pose_kind import ESTIMATED, FOUND, find_pose_kind
 from scanplan.recordings.survey_protocol import NamedChain
-from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -71,12 +71,6 @@ class BagSurvey:
     ----------
     recordings : list of bags.Bag
         Open.
-    base_from_sensor : (6,) float or None
-        x, y, z in metres, roll, pitch, yaw in degrees.
-    max_damaged_share : float
-        Of the clouds that are read.
-    pose_kind : str, optional
-        Found by topic and frame by default.
 
     Raises
     ------
@@ -91,12 +85,7 @@ class BagSurvey:
         cloud_topic: str | None,
         pose_topic: str | None,
         base_frame: str | None,
-        base_from_sensor: Sequence[float] | None,
-        min_range_m: float,
-        max_range_m: float,
-        units: Units = IN_METRES,
-        max_damaged_share: float = 0.0,
-        pose_kind: str = FOUND,
+        reading: CloudReading,
     ) -> None:
         self._bags = sorted(recordings, key=lambda bag: (bag.start_ns, str(bag.path)))
         self._where = ", ".join(str(bag.path) for bag in self._bags)
@@ -107,16 +96,15 @@ class BagSurvey:
         self._own_topics = topics.leave_other_robots(self._topics, self._cloud)
         if others := [t.name for t in self._topics if t not in self._own_topics]:
             log.log_line(f"{self._where}: of another robot, left out: {', '.join(others)}")
-        self.units = units
+        self.units = reading.units
         self._pose_topic = pose_topic
-        self._wanted_pose_kind = pose_kind
+        self._wanted_pose_kind = reading.pose_kind
         self._base_frame = base_frame
-        self._extrinsics = (
-            None if base_from_sensor is None else configured_extrinsics(base_from_sensor)
-        )
-        self._max_damaged_share = max_damaged_share
-        self._damaged = DamagedClouds(0, max_damaged_share)
-        self._limits = {"min_range_m": min_range_m, "max_range_m": max_range_m}
+        mounting = reading.base_from_sensor
+        self._extrinsics = None if mounting is None else configured_extrinsics(mounting)
+        self._max_damaged_share = reading.max_damaged_share
+        self._damaged = DamagedClouds(0, reading.max_damaged_share)
+        self._limits = reading.limits
 
     @property
     def planar(self) -> bool:
@@ -150,7 +138,7 @@ class BagSurvey:
         # points in the map are free of the sensor's motion
         if scan.time_raw is None or self._is_in_map:
             return None
-        return scan.time_raw[clouds.is_in_range(scan.xyz_m, **self._limits)]
+        return scan.time_raw[self._limits.include(scan.xyz_m)]
 
     @property
     def pose_kind(self) -> str:
@@ -360,7 +348,7 @@ class BagSurvey:
                 scan = self._decode(cloud)
             except StageError:
                 continue
-            if clouds.is_in_range(scan.xyz_m, **self._limits).any():
+            if self._limits.include(scan.xyz_m).any():
                 scans.append(scan)
             if len(scans) == clouds.SCANS_TO_JUDGE:
                 break
@@ -408,7 +396,7 @@ class BagSurvey:
         if self._is_in_map:
             pose = self._world_from_sensor[scan.scan_id]
             scan = scan._replace(xyz_m=registered_clouds.to_sensor(scan.xyz_m, pose))
-        return clouds.keep_in_range(*scan, sweep_times=sweep_times, **self._limits)
+        return clouds.keep_in_range(*scan, self._limits, sweep_times=sweep_times)
 
     @cached_property
     def _is_in_map(self) -> bool:

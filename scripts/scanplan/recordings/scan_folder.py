@@ -5,19 +5,18 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
 from scanplan.recordings import clocks, frame_edges, registered_clouds, table_points
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.integrity.pcd_size import check_pcd_size
 from scanplan.recordings.integrity.ply_size import check_ply_size
 from scanplan.recordings.messages import TIME_FIELDS
 from scanplan.recordings.motion.pose_kind import ESTIMATED, LOCALISER
 from scanplan.recordings.posed_scans import PosedScans
-from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.store import tum
 from scanplan.types import Array, FloatArray, IntArray
@@ -37,9 +36,8 @@ class ScanFolder(PosedScans):
     ----------
     files : sequence of str
         The clouds and poses.tum.
-    units : units.Units, optional
-    **reading
-        Keywords of `posed_scans.PosedScans`; by default the poses are a localiser's.
+    reading : CloudReading
+        By default the poses are a localiser's.
 
     Raises
     ------
@@ -47,17 +45,17 @@ class ScanFolder(PosedScans):
         If the poses are damaged or do not fit the files.
     """
 
-    def __init__(self, files: Sequence[str], *, units: Units = IN_METRES, **reading: Any) -> None:
-        self._unit_m = units.cloud_m
+    def __init__(self, files: Sequence[str], reading: CloudReading) -> None:
+        self._unit_m = reading.units.cloud_m
         paths = [Path(file) for file in files]
         poses_path = next(p for p in paths if p.name == dataset_files.POSES_FILE)
         pose_ns, rows = tum.read_tum(poses_path)
-        rows[:, :3] *= units.pose_m
+        rows[:, :3] *= reading.units.pose_m
         track = _make_track(poses_path, pose_ns, rows)
         self._clouds, stamps_ns = _order_clouds(
             [path for path in paths if path != poses_path], pose_ns, poses_path
         )
-        super().__init__(str(poses_path), track, stamps_ns, LOCALISER, **reading)
+        super().__init__(str(poses_path), track, stamps_ns, LOCALISER, reading)
 
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return what a file holds: see `posed_scans.PosedScans.read_cloud`."""

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from scanplan.project import dataset_files
+from scanplan.recordings.cloud_reading import CloudReading
+from scanplan.recordings.clouds import RangeLimits
 from scanplan.recordings.motion.deskew import DeskewedSurvey
 from scanplan.recordings.motion.pose_kind import FOUND
 from scanplan.recordings.motion.trajectory import SensorMotion
@@ -84,21 +86,20 @@ def open_survey(
         "pose_topic": pose_topic,
         "base_frame": base_frame,
     }
-    common: dict[str, Any] = {
-        "base_from_sensor": base_from_sensor,
-        "min_range_m": min_range_m,
-        "max_range_m": max_range_m,
-        "units": Units(cloud_unit, pose_unit),
-        "max_damaged_share": max_damaged_share,
-        "pose_kind": pose_kind,
-    }
-    if scaled := common["units"].describe():
+    reading = CloudReading(
+        limits=RangeLimits(min_range_m, max_range_m),
+        base_from_sensor=base_from_sensor,
+        units=Units(cloud_unit, pose_unit),
+        max_damaged_share=max_damaged_share,
+        pose_kind=pose_kind,
+    )
+    if scaled := reading.units.describe():
         log.log_line(scaled)
     opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
-        survey = _open_points(files, storey, common)
+        survey = _open_points(files, storey, reading)
         if survey is None:
-            survey = _open_recordings(files, stack, opening, topics_and_frame, common)
+            survey = _open_recordings(files, stack, opening, topics_and_frame, reading)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
 
 
@@ -131,16 +132,14 @@ def open_colours(
             yield None
 
 
-def _open_points(
-    files: Sequence[str], storey: int | None, common: Mapping[str, Any]
-) -> Survey | None:
+def _open_points(files: Sequence[str], storey: int | None, reading: CloudReading) -> Survey | None:
     """Return a survey of stations, or of a merged cloud; None of other files."""
     where, paths = ", ".join(files), list(map(Path, files))
     if dataset_files.is_merged_cloud(files):
         from scanplan.recordings.merged import merged_cloud, point_files
 
         return merged_cloud.MergedCloud(
-            where, point_files.list_sources(paths), storey=storey, **common
+            where, point_files.list_sources(paths), reading, storey=storey
         )
     if not dataset_files.is_of_stations(files):
         return None
@@ -155,8 +154,8 @@ def _open_points(
         from scanplan.recordings.merged import merged_cloud
 
         sources = [station.read_in_world for station in found]
-        return merged_cloud.MergedCloud(where, sources, storey=storey, **common)
-    return station_scans.StationScans(where, found, **common)
+        return merged_cloud.MergedCloud(where, sources, reading, storey=storey)
+    return station_scans.StationScans(where, found, reading)
 
 
 def _open_recordings(
@@ -164,21 +163,21 @@ def _open_recordings(
     stack: ExitStack,
     opening: Mapping[str, Any],
     topics_and_frame: Mapping[str, Any],
-    common: Mapping[str, Any],
+    reading: CloudReading,
 ) -> Survey:
     # rosbags costs a second to import: where it is needed alone
     if dataset_files.is_scan_folder(files):
         from scanplan.recordings import scan_folder
 
-        return scan_folder.ScanFolder(files, **common)
+        return scan_folder.ScanFolder(files, reading)
     if dataset_files.is_grid_map(files):
         from scanplan.recordings import grid_map_scans
 
-        return grid_map_scans.GridMapScans(files, **common)
+        return grid_map_scans.GridMapScans(files, reading)
     if dataset_files.is_las_drive(files):
         from scanplan.recordings import las_drive
 
-        return las_drive.LasDrive(files, **common)
+        return las_drive.LasDrive(files, reading)
     from scanplan.recordings import bags, recorded_survey
 
     opened = [
@@ -189,13 +188,14 @@ def _open_recordings(
     if names is None or isinstance(names, str):
         from scanplan.recordings import nodding_sweeps
 
-        survey = recorded_survey.BagSurvey(opened, **topics_and_frame, **common)
+        survey = recorded_survey.BagSurvey(opened, **topics_and_frame, reading=reading)
         return nodding_sweeps.take_nods(survey)
     from scanplan.recordings import scanner_drives
 
     surveys = [
-        recorded_survey.BagSurvey(opened, **{**topics_and_frame, "cloud_topic": name}, **common)
+        recorded_survey.BagSurvey(
+            opened, **{**topics_and_frame, "cloud_topic": name}, reading=reading
+        )
         for name in names
     ]
-    share = common["max_damaged_share"]
-    return scanner_drives.ScannerDrives(surveys, max_damaged_share=share)
+    return scanner_drives.ScannerDrives(surveys, max_damaged_share=reading.max_damaged_share)

@@ -1,7 +1,7 @@
 """Work that treats scans one by one and needs to know where their sensor was."""
 
 from collections.abc import Callable
-from typing import Any
+from functools import partial
 
 from scanplan.stage.per_scan import Result, map_scans, read_chunk_ids
 from scanplan.store import registered_scans, tables
@@ -15,11 +15,9 @@ def map_registered_scans(
     *,
     label: str,
     threads: int,
-    settings: object,
     chunk: str | None = None,
-    **common: Any,
 ) -> tuple[IntArray, list[Result]]:
-    """Call `function(scan_id, xyz_m, sensor_xyz_m=, planar=, settings=)` for registered scans.
+    """Call `function(scan_id, xyz_m, sensor_xyz_m=, planar=)` for registered scans.
 
     Parameters
     ----------
@@ -30,12 +28,8 @@ def map_registered_scans(
         scans.parquet and registration.parquet.
     label : str
         The stage's name, for the progress line.
-    settings : object
-        Passed on.
     chunk : str, optional
         Which scans, see `per_scan.read_chunk_ids`; all by default.
-    **common
-        Further keywords of every call.
 
     Returns
     -------
@@ -52,15 +46,12 @@ def map_registered_scans(
     registered_scans.read_registered_scans(registration, store)
     scan_ids = read_chunk_ids(scans, chunk)
     results = map_scans(
-        function,
+        partial(function, planar=store.planar),
         scans,
         label=label,
         threads=threads,
         scan_ids=scan_ids,
         per_scan=sensor_keywords(scan_ids, scans, registration),
-        planar=store.planar,
-        settings=settings,
-        **common,
     )
     return scan_ids, results
 

@@ -27,15 +27,15 @@ def map_scans(
     threads: int = 1,
     scan_ids: IntArray | None = None,
     per_scan: Mapping[int, Keywords] | None = None,
-    **settings: Any,
 ) -> list[Result]:
-    """Call `function(scan_id, xyz_m, **settings)` for scans of a table, on several cores.
+    """Call `function(scan_id, xyz_m)` for scans of a table, on several cores.
 
     Parameters
     ----------
     function : callable
-        Defined at the top level of a helper module; its result must depend on its arguments alone,
-        so that the result is the same for any number of cores.
+        Defined at the top level of a helper module, or a `functools.partial` of such a one; its
+        result must depend on its arguments alone, so that the result is the same for any number of
+        cores.
     scans_path : path-like
         A scans.parquet.
     label : str
@@ -45,9 +45,7 @@ def map_scans(
     scan_ids : (n,) int, optional
         Which scans, in this order; all by default.
     per_scan : dict of int to dict, optional
-        Further keywords of the call of a scan alone, by scan_id.
-    **settings
-        Keywords of every call.
+        Keywords of the call of a scan alone, by scan_id.
 
     Returns
     -------
@@ -60,7 +58,7 @@ def map_scans(
     threads = min(threads, max(1, len(scan_ids) // _SCANS_A_WORKER))
     parts = np.array_split(scan_ids, threads * workers.JOBS_PER_CORE)
     jobs = [
-        (function, str(scans_path), part, _keywords_of(part, keywords), settings)
+        (function, str(scans_path), part, _keywords_of(part, keywords))
         for part in parts
         if len(part)
     ]
@@ -112,9 +110,8 @@ def _map_part(
     scans_path: str,
     scan_ids: IntArray,
     per_scan: Mapping[int, Keywords],
-    settings: Keywords,
 ) -> list[Result]:
     return [
-        function(scan_id, xyz_m, **per_scan[scan_id], **settings)
+        function(scan_id, xyz_m, **per_scan[scan_id])
         for scan_id, xyz_m in _stores[scans_path].scans(scan_ids)
     ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
@@ -22,8 +23,7 @@ _METHODS = ("hull", "cluster_hull", "sequential")
 def draw_thesis_rooms(
     files: Mapping[str, FilePath],
     evaluated: Sequence[FilePath],
-    outputs: Sequence[FilePath],
-    orders: FilePath,
+    outputs: Mapping[str, Any],
     *,
     bitmap_cell_m: float,
     max_range_m: float,
@@ -38,10 +38,9 @@ def draw_thesis_rooms(
         methods, the extractor), and `truth` and `true_poses`.
     evaluated : list of path-like
         evaluation/walls.parquet of every seed.
-    outputs : list of path-like
-        figure_<number>.svg, to write.
-    orders : path-like
-        orders.svg, to write: how near every order comes to the oracle's.
+    outputs : dict
+        `figures`, list of path-like, and `orders`, path-like, to write: figure_<number>.svg, and
+        orders.svg, how near every order comes to the oracle's.
     bitmap_cell_m : float
         Of figure 5.1.
     max_range_m : float
@@ -69,12 +68,12 @@ def draw_thesis_rooms(
         evaluated=[pd.DataFrame(tables.read_table(path, schemas.EVALUATION)) for path in evaluated],
         max_range_m=max_range_m,
     )
-    for path in outputs:
+    for path in outputs["figures"]:
         figure = room_figures.draw_room_figure(survey, Path(path).stem, bitmap_cell_m)
         atomic.write_text(path, figure_files.format_svg(figure))
     orders_figure = oracle_figure.draw_oracle_figure(*survey.evaluated)
-    atomic.write_text(orders, figure_files.format_svg(orders_figure))
-    log.log_line(f"draw_thesis_rooms: {len(outputs)} figures")
+    atomic.write_text(outputs["orders"], figure_files.format_svg(orders_figure))
+    log.log_line(f"draw_thesis_rooms: {len(outputs['figures'])} figures")
 
 
 if __name__ == "__main__":
@@ -82,8 +81,7 @@ if __name__ == "__main__":
         draw_thesis_rooms(
             {name: path for name, path in snakemake.input.items() if name != "evaluated"},
             list(snakemake.input.evaluated),
-            snakemake.output.figures,
-            snakemake.output.orders,
+            dict(snakemake.output.items()),
             bitmap_cell_m=snakemake.params.bitmap_cell_m,
             max_range_m=snakemake.params.max_range_m,
             extraction=snakemake.params.extraction,

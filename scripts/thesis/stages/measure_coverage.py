@@ -1,6 +1,7 @@
 """Measure what hulls cover, by number of clusters and against what scans truly see."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import shapely
@@ -64,11 +65,10 @@ def measure_coverage(
         "cluster_hull_iou": coverage.polygon_iou(cluster_hulls, seen),
     }
     strays = per_scan.map_scans(
-        coverage.stray_area_columns,
+        partial(coverage.stray_area_columns, **sampling),
         scans,
         label="measure_coverage, a stray return",
         threads=threads,
-        **sampling,
     )
     for name in ("full_hull_stray_m2", "cluster_hull_stray_m2"):
         measures[name] = np.concatenate([of_scan[name] for of_scan in strays])

@@ -16,8 +16,7 @@ def write_thesis(
     figures: Sequence[FilePath],
     own_figures: Sequence[FilePath],
     claims: FilePath,
-    steps: FilePath,
-    limited: FilePath,
+    steps: Sequence[FilePath],
     page: Sequence[FilePath],
     output: FilePath,
 ) -> None:
@@ -29,8 +28,10 @@ def write_thesis(
         figure_<number>.svg.
     own_figures : list of path-like
         orders.svg, gates.svg and alignments.svg: figures that the thesis has not.
-    claims, steps, limited : path-like
-        claims.parquet, and thesis/steps.parquet of the drive with our limits and with the thesis's.
+    claims : path-like
+        claims.parquet.
+    steps : (path-like, path-like)
+        thesis/steps.parquet of the drive with our limits, and with the thesis's.
     page : list of path-like
         Template, style and the table of deviations.
     output : path-like
@@ -42,8 +43,7 @@ def write_thesis(
         figure_texts,
         _read_texts(own_figures),
         pd.DataFrame(tables.read_table(claims, thesis_schemas.CLAIMS)),
-        pd.DataFrame(tables.read_table(steps, thesis_schemas.STEPS)),
-        pd.DataFrame(tables.read_table(limited, thesis_schemas.STEPS)),
+        *(pd.DataFrame(tables.read_table(path, thesis_schemas.STEPS)) for path in steps),
     )
     atomic.write_text(output, text)
     log.log_line(f"write_thesis: {len(figure_texts)} figures, {len(text) / 1e6:.1f} MB")
@@ -59,8 +59,7 @@ if __name__ == "__main__":
             list(snakemake.input.figures),
             [snakemake.input[name] for name in ("orders", "gates", "alignments")],
             snakemake.input.claims,
-            snakemake.input.steps[0],
-            snakemake.input.limited[0],
+            (snakemake.input.steps[0], snakemake.input.limited[0]),
             list(snakemake.input.page),
             snakemake.output.page,
         )

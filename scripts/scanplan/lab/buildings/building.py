@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -54,17 +54,49 @@ class Building:
     doorways: tuple[storeys.Doorway, ...] = ()
 
 
+@dataclass(frozen=True)
+class FileReading:
+    """What a file leaves open; of drawings nothing.
+
+    Attributes
+    ----------
+    storey : str, int or None
+        Of a building model: name, or index from below; may be None where there is one.
+    unit : str
+        Of a mesh: `m`, `cm`, `mm`, `in` or `ft`. The other formats state theirs.
+    floor_z_m : float
+        Of a mesh: the height of the floor to drive on, in metres of its own frame.
+    doors : str
+        Of a building model: `open` leaves out doors with their frames, `closed` keeps them.
+    windows : str
+        Of a building model: `glass` keeps windows, their panes marked as glass, `empty` leaves
+        them out.
+    """
+
+    storey: str | int | None = None
+    unit: str = "m"
+    floor_z_m: float = 0.0
+    doors: str = "open"
+    windows: str = "glass"
+
+    def __post_init__(self) -> None:
+        if self.doors not in DOORS or self.windows not in WINDOWS:
+            raise ValueError(
+                f"doors {self.doors!r} is none of {DOORS}, or windows {self.windows!r} none of"
+                f" {WINDOWS}"
+            )
+
+
+AS_STATED = FileReading()
+
+
 def load_building(
     data: bytes,
     source: Path,
     *,
     slice_height_m: float,
     planar: bool = False,
-    storey: str | int | None = None,
-    unit: str = "m",
-    floor_z_m: float = 0.0,
-    doors: str = "open",
-    windows: str = "glass",
+    reading: FileReading = AS_STATED,
 ) -> Building:
     """Read a building from a drawing (.geojson), a mesh (.stl, .obj, .ply) or a model (.ifc).
 
@@ -78,17 +110,6 @@ def load_building(
         Height above the floor at which wall faces are cut, the sensor's.
     planar : bool
         Whether all beams of the sensor are level, so that low furniture occludes walls, too.
-    storey : str, int or None
-        Of a building model: name, or index from below; may be None where there is one.
-    unit : str
-        Of a mesh: `m`, `cm`, `mm`, `in` or `ft`. The other formats state theirs.
-    floor_z_m : float
-        Of a mesh: the height of the floor to drive on, in metres of its own frame.
-    doors : str
-        Of a building model: `open` leaves out doors with their frames, `closed` keeps them.
-    windows : str
-        Of a building model: `glass` keeps windows, their panes marked as glass, `empty` leaves
-        them out.
 
     Returns
     -------
@@ -99,19 +120,14 @@ def load_building(
     StageError
         In one line, if the file cannot be used.
     """
-    if doors not in DOORS or windows not in WINDOWS:
-        raise ValueError(
-            f"doors {doors!r} is none of {DOORS}, or windows {windows!r} none of {WINDOWS}"
-        )
     suffix = source.suffix.lower()
     if suffix in (".geojson", ".json"):
         plan = drawing_file.parse_drawing(data, source)
         return _building_of_drawing(plan, slice_height_m, planar)
     if suffix in MESH_SUFFIXES:
-        return _load_mesh(data, source, unit, floor_z_m, slice_height_m, planar)
+        return _load_mesh(data, source, reading, slice_height_m, planar)
     if suffix == ".ifc":
-        opening = {"doors": doors, "windows": windows}
-        return _load_model(data, source, storey, slice_height_m, planar=planar, **opening)
+        return _load_model(data, source, reading, slice_height_m, planar)
     raise StageError(
         f"{source}: is no building; accepted are .geojson (a drawing),"
         f" {', '.join(MESH_SUFFIXES)} (meshes) and .ifc"
@@ -124,13 +140,12 @@ def building_of_model(
     slice_height_m: float,
     source: FilePath,
     *,
-    doors: str = "open",
-    windows: str = "glass",
+    reading: FileReading = AS_STATED,
     planar: bool = False,
 ) -> Building:
     """Return one storey of a building model that is read already; as `load_building` otherwise."""
-    storey = storeys.storey_of_model(model, index, doors=doors, windows=windows)
-    if doors == "closed":
+    storey = storeys.storey_of_model(model, index, doors=reading.doors, windows=reading.windows)
+    if reading.doors == "closed":
         storey = replace(storey, doorways=())
     if not 0 < slice_height_m < storey.height_m:
         raise StageError(
@@ -159,28 +174,27 @@ def _building_of_drawing(
 
 
 def _load_mesh(
-    data: bytes, source: Path, unit: str, floor_z_m: float, slice_height_m: float, planar: bool
+    data: bytes, source: Path, reading: FileReading, slice_height_m: float, planar: bool
 ) -> Building:
     # imported here so that the demo does not wait a second for a reader that it has no use for
     from scanplan.lab.buildings import mesh_file
 
-    triangles_m, notes = mesh_file.parse_mesh(data, source.suffix.lower(), source, unit=unit)
-    storey = storeys.storey_of_mesh(triangles_m - [0.0, 0.0, floor_z_m], slice_height_m, source)
+    triangles_m, notes = mesh_file.parse_mesh(
+        data, source.suffix.lower(), source, unit=reading.unit
+    )
+    on_floor_m = triangles_m - [0.0, 0.0, reading.floor_z_m]
+    storey = storeys.storey_of_mesh(on_floor_m, slice_height_m, source)
     return _building_of_storey(storey, slice_height_m, source, notes, planar)
 
 
 def _load_model(
-    data: bytes,
-    source: Path,
-    chosen: str | int | None,
-    slice_height_m: float,
-    **reading: Any,
+    data: bytes, source: Path, reading: FileReading, slice_height_m: float, planar: bool
 ) -> Building:
     from scanplan.design import ifc_file
 
     model = ifc_file.parse_ifc(data, source)
-    index = find_storey(model.storeys, chosen, source, "simulate.site.storey")
-    return building_of_model(model, index, slice_height_m, source, **reading)
+    index = find_storey(model.storeys, reading.storey, source, "simulate.site.storey")
+    return building_of_model(model, index, slice_height_m, source, reading=reading, planar=planar)
 
 
 def _building_of_storey(

@@ -1,6 +1,6 @@
 """The rover's way through a building: given by its file or the settings, or planned."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -13,22 +13,42 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.errors import StageError
 from scanplan.lab.buildings import truth
 from scanplan.lab.buildings.building import Building
-from scanplan.lab.buildings.route import KINDS, Route, plan_route
+from scanplan.lab.buildings.route import KINDS, Ground, Route, plan_route
 from scanplan.types import FilePath
 
 ROVER_RADIUS_M = 0.23  # half of the thesis's 18 inch rover (section 4.2.1)
 _WAYPOINTS = "simulate.site.waypoints_m"
 
 
+@dataclass(frozen=True, eq=False)
+class WaySettings:
+    """How the rover's way is found.
+
+    Attributes
+    ----------
+    route : str
+        `given`: by `waypoints_m`, else the file's own way, else as `rooms`; `rooms`, `hallways`:
+        see `route.plan_route`.
+    clearance_m : float
+        What a planned way keeps from any obstacle.
+    waypoints_m : (n, 2) float or None
+        Corners of the way.
+    start_m : (2,) float, "random" or None
+        Where a planned way begins, see `route.plan_route`.
+    """
+
+    route: str
+    clearance_m: float
+    waypoints_m: ArrayLike | None = None
+    start_m: Any = None
+
+
 def plan_building_route(
     site: Building,
     source: FilePath,
+    settings: WaySettings,
     *,
-    route: str,
-    clearance_m: float,
     reach_m: float = 0.0,
-    waypoints_m: ArrayLike | None = None,
-    start_m: Any = None,
     seed: int = 0,
 ) -> Building:
     """Return a building with the rover's way, and the rooms of its truth that this visits.
@@ -37,17 +57,8 @@ def plan_building_route(
     ----------
     source : path-like
         What errors name as their origin.
-    route : str
-        `given`: by `waypoints_m`, else the file's own way, else as `rooms`; `rooms`, `hallways`:
-        see `route.plan_route`.
-    clearance_m : float
-        What a planned way keeps from any obstacle.
     reach_m : float
         How far the sensor sits from the rover's middle, which any way keeps too.
-    waypoints_m : (n, 2) float or None
-        Corners of the way.
-    start_m : (2,) float, "random" or None
-        Where a planned way begins, see `route.plan_route`.
     seed : int
         Of a random start.
 
@@ -61,18 +72,17 @@ def plan_building_route(
         If the way leads through walls or furniture, none can be planned, or it is both given and
         to be planned.
     """
-    _check_choice(site, route, waypoints_m, start_m)
+    route, waypoints_m = settings.route, settings.waypoints_m
+    _check_choice(site, route, waypoints_m, settings.start_m)
     way_m = site.waypoints_m if waypoints_m is None else np.array(waypoints_m, float)
     notes = site.notes
     if route != "given" or way_m is None:
         planned = plan_route(
-            site.floor_m,
-            site.obstacles_m,
-            site.rooms,
+            Ground(site.floor_m, site.obstacles_m, site.rooms),
             source,
             kind="rooms" if route == "given" else route,
-            clearance_m=max(clearance_m, reach_m),
-            start_m=start_m,
+            clearance_m=max(settings.clearance_m, reach_m),
+            start_m=settings.start_m,
             seed=seed,
         )
         way_m = planned.waypoints_m

@@ -27,6 +27,12 @@ _STATES = (
 )
 
 
+def draw_way(waypoints_m: ArrayLike, reach_m: float = 0.0) -> BaseGeometry:
+    """Return the ground that a rover's way (n, 2) needs, whose sensor reaches so far ahead."""
+    clearance_m = max(ROVER_RADIUS_M, reach_m)
+    return overlays.buffer_shapes(LineString(np.asarray(waypoints_m, float)), 1.2 * clearance_m)
+
+
 def hang_leaves(
     site: building.Building,
     *,
@@ -34,8 +40,7 @@ def hang_leaves(
     seed: int,
     slice_height_m: float,
     planar: bool = False,
-    waypoints_m: ArrayLike | None = None,
-    clearance_m: float = ROVER_RADIUS_M,
+    way: BaseGeometry | None = None,
 ) -> building.Building:
     """Return a building with leaves in some of its doors that have none.
 
@@ -49,10 +54,9 @@ def hang_leaves(
         Of its doorways that get a leaf.
     slice_height_m, planar
         See `building.load_building`.
-    waypoints_m : (n, 2) float or None
-        The rover's way where it is given; one that is yet to be planned goes around them.
-    clearance_m : float
-        What the way keeps from any obstacle.
+    way : shapely geometry or None
+        Ground of the rover's way where it is given, see `draw_way`; one that is yet to be planned
+        goes around them.
 
     Returns
     -------
@@ -63,8 +67,7 @@ def hang_leaves(
         note = "simulate.site.leaves: the building tells of no door without a leaf; none is hung"
         return replace(site, notes=(*site.notes, note))
     taken = site.obstacles_m
-    if waypoints_m is not None:
-        way = overlays.buffer_shapes(LineString(np.asarray(waypoints_m, float)), 1.2 * clearance_m)
+    if way is not None:
         taken = overlays.unite_each(taken, way)
     hung: list[tuple[int, list[LeafBody]]] = []
     for row, opening in site.doorways:

@@ -46,10 +46,24 @@ class Route:
     missed: tuple[str, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Where a rover may drive.
+
+    Attributes
+    ----------
+    floor_m, obstacles_m : shapely geometry
+        Where there is floor, and what stands on it.
+    rooms : list of (str, Polygon)
+    """
+
+    floor_m: BaseGeometry
+    obstacles_m: BaseGeometry
+    rooms: Rooms
+
+
 def plan_route(
-    floor_m: BaseGeometry,
-    obstacles_m: BaseGeometry,
-    rooms: Rooms,
+    ground: Ground,
     source: FilePath,
     *,
     kind: str,
@@ -66,9 +80,6 @@ def plan_route(
 
     Parameters
     ----------
-    floor_m, obstacles_m : shapely geometry
-        Where there is floor, and what stands on it.
-    rooms : list of (str, Polygon)
     source : path-like
         What errors name as their origin.
     kind : str
@@ -95,8 +106,8 @@ def plan_route(
         raise ValueError(
             f"kind {kind!r} is none of {KINDS[1:]}, or clearance {clearance_m} m is not positive"
         )
-    asked, area_m = _asked_rooms(floor_m, rooms, kind, source)
-    free = free_ground(area_m, obstacles_m, clearance_m)
+    asked, area_m = _asked_rooms(ground.floor_m, ground.rooms, kind, source)
+    free = free_ground(area_m, ground.obstacles_m, clearance_m)
     start_xy_m = None if isinstance(start_m, str) else start_m
     part = _part_of(free, start_xy_m, clearance_m, asked, source)
     grid = roadmap.connected_grid(_grid_over(part, clearance_m, source), start_xy_m)
@@ -104,7 +115,7 @@ def plan_route(
     stops, is_reached, ways = _choose_stops(grid, asked, first)
     _check_stops(stops, is_reached, clearance_m, source)
     legs = _join_stops(stops, ways, fixed_start=first is not None, closed=kind == "hallways")
-    corners_m = [_straighten(grid, leg, part, obstacles_m) for leg in legs]
+    corners_m = [_straighten(grid, leg, part, ground.obstacles_m) for leg in legs]
     named = [(_room_label(*room), ok) for room, ok in zip(asked, is_reached, strict=True)]
     return Route(
         waypoints_m=np.vstack([*corners_m, grid.xy_m[legs[-1][-1]]]),

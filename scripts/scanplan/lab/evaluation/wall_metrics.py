@@ -60,12 +60,20 @@ def measure_first_scans(
     for row, k in enumerate(sizes):
         used = segment_rank <= k
         found = {b: first <= k for b, first in first_found.items()}
+        drawn_m = findings.length_m[used].sum()
         rows.append({
             "k": k,
             **dict(zip(_SHARES, averaged[row], strict=True)),
             **{f"literal_{name}": share for name, share in zip(_SHARES, literal[row], strict=True)},
-            **_agreement("", truth, every_cell, found, findings, near_m, used),
-            **_agreement("visible_", truth, truth.visible, found, findings, near_visible_m, used),
+            **_agreement(
+                "", _found_shares(truth, every_cell, found), _sum_used_m(near_m, used), drawn_m
+            ),
+            **_agreement(
+                "visible_",
+                _found_shares(truth, truth.visible, found),
+                _sum_used_m(near_visible_m, used),
+                drawn_m,
+            ),
             f"entered_completeness_{JUDGED}": _found_share(truth, truth.entered, found[JUDGED]),
             **_counts(truth, findings, used, found[JUDGED]),
             "walls_per_true_wall_of_a_scan": _segments_per_face_and_scan(findings, used),
@@ -95,24 +103,28 @@ def measure_plan_lines(lines_m: FloatArray, truth: VisibleTruth, cell_m: float) 
 
 
 def _agreement(
-    prefix: str,
-    truth: VisibleTruth,
-    counted: BoolArray,
-    found: Mapping[str, BoolArray],
-    findings: Findings,
-    near_m: Mapping[str, FloatArray],
-    used: BoolArray,
+    prefix: str, completeness: Mapping[str, float], near_m: Mapping[str, float], drawn_m: float
 ) -> dict[str, float]:
-    """Return completeness, correctness and f1 against the counted cells, for every tolerance."""
-    drawn_m = findings.length_m[used].sum()
+    """Return completeness, correctness and f1 for every tolerance, by what lies near true faces."""
     row = {}
     for b in WITHIN_M:
-        completeness = _found_share(truth, counted, found[b])
-        correctness = length_metrics.safe_share(near_m[b][used].sum(), drawn_m)
-        row[f"{prefix}completeness_{b}"] = completeness
+        correctness = length_metrics.safe_share(near_m[b], drawn_m)
+        row[f"{prefix}completeness_{b}"] = completeness[b]
         row[f"{prefix}correctness_{b}"] = correctness
-        row[f"{prefix}f1_{b}"] = length_metrics.f1_score(completeness, correctness)
+        row[f"{prefix}f1_{b}"] = length_metrics.f1_score(completeness[b], correctness)
     return row
+
+
+def _sum_used_m(near_m: Mapping[str, FloatArray], used: BoolArray) -> dict[str, float]:
+    """Return the length of used segments that lies near true faces, for every tolerance."""
+    return {b: near_m[b][used].sum() for b in WITHIN_M}
+
+
+def _found_shares(
+    truth: VisibleTruth, counted: BoolArray, found: Mapping[str, BoolArray]
+) -> dict[str, float]:
+    """Return `_found_share` of the cells (c,) found within every tolerance."""
+    return {b: _found_share(truth, counted, found[b]) for b in WITHIN_M}
 
 
 def _found_share(truth: VisibleTruth, counted: BoolArray, found: BoolArray) -> float:

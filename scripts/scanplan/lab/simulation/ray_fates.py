@@ -1,5 +1,7 @@
 """What becomes of the rays of a scan, one phenomenon after the other, before they are measured."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from scanplan.lab.random_streams import RandomStream, open_stream
@@ -33,10 +35,15 @@ def find_returns(
 
     opaque, pane = scene.mesh.first_hits(rays.origin_m, rays.direction)
     solid = scene.merge_people(rays, opaque)
-    hits, is_direct = _send_on(rays, solid, opaque, pane, scene, errors, seed, scan_id)
+    hits, is_direct = _send_on(rays, solid, (opaque, pane), scene, errors, stream)
     if errors.mixed_rad:
         generator = stream(RandomStream.MIXED)
-        hits = spurious_returns.mix_edges(rays, hits, is_direct, scene, sensor, errors, generator)
+        is_edge = spurious_returns.find_edges(
+            rays.direction, hits.range_m, sensor, errors.mixed_rad
+        )
+        hits = spurious_returns.mix_edges(
+            rays, hits, is_edge & is_direct, scene, errors.mixed_rad, generator
+        )
     if errors.polished_from_rad < np.pi / 2 and scene.mesh.has("polished"):
         is_polished = opaque.is_of("polished") & is_direct & (solid.range_m == opaque.range_m)
         generator = stream(RandomStream.POLISHED)
@@ -55,21 +62,22 @@ def find_returns(
 def _send_on(
     rays: ScanRays,
     solid: raycast.RayHits,
-    opaque: raycast.MeshHits,
-    pane: raycast.MeshHits | None,
+    first: tuple[raycast.MeshHits, raycast.MeshHits | None],
     scene: Scene,
     errors: SensorErrors,
-    seed: int,
-    scan_id: int,
+    stream: Callable[[RandomStream], np.random.Generator],
 ) -> tuple[raycast.RayHits, BoolArray]:
-    """Return hits with panes and mirrors minded, and which rays (n,) end before either."""
-    hits = solid
+    """Return hits with panes and mirrors minded, and which rays (n,) end before either.
+
+    `first` is what rays meet of the building: what is opaque, and panes.
+    """
+    hits, (opaque, pane) = solid, first
     if pane is not None:
-        generator = open_stream(seed, RandomStream.GLASS, scan_id)
+        generator = stream(RandomStream.GLASS)
         hits, is_mirrored = sensor_errors.pass_glass(solid, pane, errors, generator)
         hits = mirroring.return_images(rays, hits, is_mirrored, pane, scene)
     if scene.mesh.has("mirror"):
-        generator = open_stream(seed, RandomStream.MIRROR, scan_id)
+        generator = stream(RandomStream.MIRROR)
         hits, is_mirrored = mirroring.meet_mirrors(hits, opaque, generator)
         hits = mirroring.return_images(rays, hits, is_mirrored, opaque, scene)
     return hits, hits.range_m == solid.range_m

@@ -1,7 +1,6 @@
 """The laser sensors that a survey can name: what their data sheets say of their beams."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -27,23 +26,23 @@ _MID360_ELEVATIONS_DEG = (-7.0, 52.0)
 _MID360_LINES = 4
 
 
-def make_vlp16(n_azimuth: int, **common: Any) -> sensors.Sensor:
+def make_vlp16(n_azimuth: int, turning: sensors.Turning) -> sensors.Sensor:
     """Return a Velodyne VLP-16: 16 beams from -15 to +15 degrees; see `sensors.make_lidar`.
 
     The real sensor fires 1800 columns at 10 Hz.
     """
     return sensors.make_lidar(
-        _VLP16_ELEVATIONS_DEG, n_azimuth, firing_order=_VLP16_FIRING_ORDER, **common
+        _VLP16_ELEVATIONS_DEG, n_azimuth, turning, firing_order=_VLP16_FIRING_ORDER
     )
 
 
 def make_sensor(
     model: str,
+    turning: sensors.Turning,
     *,
     n_azimuth: int,
     elevations_deg: Sequence[float] | None,
     field_deg: float,
-    **common: Any,
 ) -> sensors.Sensor:
     """Return the sensor that the config names.
 
@@ -56,8 +55,6 @@ def make_sensor(
         Of a `sensors.make_lidar`; must be None for the others.
     field_deg : float
         Of a `sensors.make_laser`.
-    **common
-        `rate_hz`, `sweep`, `min_range_m`, `max_range_m`.
 
     Raises
     ------
@@ -69,18 +66,18 @@ def make_sensor(
             f"simulate.sensor.elevations_deg: is {elevations_deg} with model {model};"
             " list the beams of a lidar, and leave it null for all others"
         )
-    if common["min_range_m"] >= common["max_range_m"]:
+    if turning.min_range_m >= turning.max_range_m:
         raise StageError(
-            f"simulate.sensor: min_range_m {common['min_range_m']:g} is not below max_range_m"
-            f" {common['max_range_m']:g}; lower it"
+            f"simulate.sensor: min_range_m {turning.min_range_m:g} is not below max_range_m"
+            f" {turning.max_range_m:g}; lower it"
         )
     if model == "laser":
-        return sensors.make_laser(n_azimuth, field_deg, **common)
+        return sensors.make_laser(n_azimuth, field_deg, turning)
     if model == "rosette":
-        level = sensors.make_lidar([0.0] * _MID360_LINES, n_azimuth, **common)
+        level = sensors.make_lidar([0.0] * _MID360_LINES, n_azimuth, turning)
         return sensors.make_rosette(level, _MID360_ELEVATIONS_DEG)
     if model == "vlp16":
-        return make_vlp16(n_azimuth, **common)
+        return make_vlp16(n_azimuth, turning)
     beams = {"ouster64": OS0_ELEVATIONS_DEG, "uneven32": VLP32C_ELEVATIONS_DEG}
     chosen = beams[model] if elevations_deg is None else elevations_deg
-    return sensors.make_lidar(sorted(chosen), n_azimuth, **common)
+    return sensors.make_lidar(sorted(chosen), n_azimuth, turning)

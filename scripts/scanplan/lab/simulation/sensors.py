@@ -76,14 +76,30 @@ class Sensor:
         return 2 * np.pi if is_whole else turn_rad - self.increment_rad
 
 
+@dataclass(frozen=True)
+class Turning:
+    """How a sensor turns, and how far it measures.
+
+    Attributes
+    ----------
+    rate_hz : float
+        Turns a second.
+    sweep : bool
+        Whether the columns fire one after the other; otherwise all at the stamp.
+    min_range_m, max_range_m : float
+    """
+
+    rate_hz: float
+    sweep: bool
+    min_range_m: float
+    max_range_m: float
+
+
 def make_lidar(
     elevations_deg: Sequence[float],
     n_azimuth: int,
+    turning: Turning,
     *,
-    rate_hz: float,
-    sweep: bool,
-    min_range_m: float,
-    max_range_m: float,
     firing_order: Sequence[int] | None = None,
 ) -> Sensor:
     """Return a spinning lidar that turns clockwise seen from above, starting forward.
@@ -97,10 +113,6 @@ def make_lidar(
         One per beam, ascending.
     n_azimuth : int
         Columns per turn.
-    rate_hz : float
-        Turns a second.
-    sweep : bool
-        Whether the columns fire one after the other; otherwise all at the stamp.
     firing_order : sequence of int, optional
         The beams of a column in the order of their points; ascending by default.
 
@@ -114,26 +126,19 @@ def make_lidar(
         If there is no beam or column, or no range between the limits.
     """
     elevation_rad = np.radians(np.asarray(elevations_deg, float))
-    if n_azimuth < 1 or not len(elevations_deg) or rate_hz <= 0:
+    if n_azimuth < 1 or not len(elevations_deg) or turning.rate_hz <= 0:
         raise ValueError(
-            f"{n_azimuth} columns of {len(elevations_deg)} beams at {rate_hz} Hz are no sensor"
+            f"{n_azimuth} columns of {len(elevations_deg)} beams at {turning.rate_hz} Hz are no"
+            " sensor"
         )
     ring = np.arange(len(elevations_deg)) if firing_order is None else np.asarray(firing_order)
     azimuth = -2 * np.pi * np.arange(n_azimuth) / n_azimuth
-    time_s = np.arange(1 - n_azimuth, 1) / n_azimuth / rate_hz
+    time_s = np.arange(1 - n_azimuth, 1) / n_azimuth / turning.rate_hz
     direction = _directions(azimuth, elevation_rad[ring])
-    return _make_sensor(direction, ring, time_s * sweep, rate_hz, None, min_range_m, max_range_m)
+    return _make_sensor(direction, ring, time_s, turning)
 
 
-def make_laser(
-    n_beams: int,
-    field_deg: float,
-    *,
-    rate_hz: float,
-    sweep: bool,
-    min_range_m: float,
-    max_range_m: float,
-) -> Sensor:
+def make_laser(n_beams: int, field_deg: float, turning: Turning) -> Sensor:
     """Return a 2-D laser scanner that turns anticlockwise, the middle of its field forward.
 
     Parameters
@@ -141,8 +146,6 @@ def make_laser(
     field_deg : float
         From the first to the last beam; 360 for a whole turn, whose last beam is followed by the
         first.
-    rate_hz, sweep, min_range_m, max_range_m
-        As for `make_lidar`.
 
     Returns
     -------
@@ -153,17 +156,17 @@ def make_laser(
     ValueError
         If there are fewer than two beams, no field, or no range between the limits.
     """
-    if n_beams < 2 or not 0 < field_deg <= 360 or rate_hz <= 0:
-        raise ValueError(f"{n_beams} beams over {field_deg} degrees at {rate_hz} Hz are no sensor")
+    if n_beams < 2 or not 0 < field_deg <= 360 or turning.rate_hz <= 0:
+        raise ValueError(
+            f"{n_beams} beams over {field_deg} degrees at {turning.rate_hz} Hz are no sensor"
+        )
     # float32, as sensor_msgs/LaserScan states it
     increment = float(np.float32(np.radians(field_deg) / (n_beams - (field_deg < 360))))
     angle = float(np.float32(-np.radians(field_deg) / 2)) + increment * np.arange(n_beams)
-    time_s = np.arange(n_beams) * increment / (2 * np.pi) / rate_hz
+    time_s = np.arange(n_beams) * increment / (2 * np.pi) / turning.rate_hz
     ring = np.zeros(1, int)
     direction = _directions(angle, np.zeros(1))
-    return _make_sensor(
-        direction, ring, time_s * sweep, rate_hz, increment, min_range_m, max_range_m
-    )
+    return _make_sensor(direction, ring, time_s, turning, increment)
 
 
 def make_rosette(level: Sensor, elevations_deg: tuple[float, float]) -> Sensor:
@@ -215,19 +218,19 @@ def _make_sensor(
     direction: FloatArray,
     ring: IntArray,
     time_s: FloatArray,
-    rate_hz: float,
-    increment_rad: float | None,
-    min_range_m: float,
-    max_range_m: float,
+    turning: Turning,
+    increment_rad: float | None = None,
 ) -> Sensor:
-    if not 0 <= min_range_m < max_range_m:
-        raise ValueError(f"ranges from {min_range_m} to {max_range_m} m are no sensor's")
+    if not 0 <= turning.min_range_m < turning.max_range_m:
+        raise ValueError(
+            f"ranges from {turning.min_range_m} to {turning.max_range_m} m are no sensor's"
+        )
     return Sensor(
         direction=direction,
         ring=ring.astype(np.uint16),
-        time_s=time_s,
-        period_s=1 / rate_hz,
+        time_s=time_s * turning.sweep,
+        period_s=1 / turning.rate_hz,
         increment_rad=increment_rad,
-        min_range_m=float(min_range_m),
-        max_range_m=float(max_range_m),
+        min_range_m=float(turning.min_range_m),
+        max_range_m=float(turning.max_range_m),
     )

@@ -21,10 +21,9 @@ _FLATTEST_COSINE = 0.17  # of 80 degrees: ASSUME ranges at flatter angles are no
 def mix_edges(
     rays: ScanRays,
     hits: raycast.RayHits,
-    is_direct: BoolArray,
+    is_mixed: BoolArray,
     scene: Scene,
-    sensor: Sensor,
-    errors: SensorErrors,
+    width_rad: float,
     generator: np.random.Generator,
 ) -> raycast.RayHits:
     """Return hits in which rays that pass an edge within their beam mix what is on both its sides.
@@ -37,17 +36,19 @@ def mix_edges(
 
     Parameters
     ----------
-    is_direct : (n,) bool
-        Rays that meet an opaque surface or a person without a pane or mirror.
+    is_mixed : (n,) bool
+        Rays at edges, see `find_edges`, that meet an opaque surface or a person without a pane or
+        mirror.
+    width_rad : float
+        Of the beam.
 
     Returns
     -------
     raycast.RayHits
     """
-    is_edge = find_edges(rays.direction, hits.range_m, sensor, errors.mixed_rad)
-    (ray,) = np.nonzero(is_edge & is_direct & np.isfinite(hits.range_m))
+    (ray,) = np.nonzero(is_mixed & np.isfinite(hits.range_m))
     own = rays.direction.reshape(-1, 3)[ray]
-    beside = jitter_rays(own, errors.mixed_rad, generator)
+    beside = jitter_rays(own, width_rad, generator)
     other, _ = scene.meet(rays.turn_rays(ray, beside))
     share = generator.uniform(0.0, 0.5, len(ray)).astype(np.float32)
     own_m = hits.range_m[ray]

@@ -18,6 +18,7 @@ from scanplan.lab.simulation import (
     rover,
     sensor_errors,
     sensor_models,
+    sensors,
     sweeps,
 )
 from scanplan.lab.simulation.odometry import WheelErrors
@@ -28,6 +29,7 @@ _START = ("start_off_m", "start_off_deg", "converge_m")
 _SLAM = ("walk_m", "walk_deg", "loop_late_m")
 _SPEAKING = ("update_distance_m", "update_angle_deg", "transform_tolerance_s")
 _ROUTE = ("route", "waypoints_m", "start_m", "clearance_m")
+_TURNING = ("rate_hz", "sweep", "min_range_m", "max_range_m")
 _CLUTTER = ("chairs", "doors_ajar")
 
 
@@ -58,7 +60,11 @@ def prepare_site(
     others = (*_ROUTE, *_CLUTTER, "leaves")
     reading = {key: value for key, value in site.items() if key not in others}
     found = building.load_building(
-        data, source, slice_height_m=mount["height_m"], planar=planar, **reading
+        data,
+        source,
+        slice_height_m=mount["height_m"],
+        planar=planar,
+        reading=building.FileReading(**reading),
     )
     if site.get("leaves", 0.0) > 0:
         given_m = found.waypoints_m if way["waypoints_m"] is None else way["waypoints_m"]
@@ -68,11 +74,16 @@ def prepare_site(
             seed=seed,
             slice_height_m=mount["height_m"],
             planar=planar,
-            waypoints_m=given_m if way["route"] == "given" else None,
-            clearance_m=max(building_route.ROVER_RADIUS_M, abs(mount["forward_m"])),
+            way=None
+            if given_m is None or way["route"] != "given"
+            else random_leaves.draw_way(given_m, abs(mount["forward_m"])),
         )
     driven = building_route.plan_building_route(
-        found, source, **way, seed=seed, reach_m=abs(mount["forward_m"])
+        found,
+        source,
+        building_route.WaySettings(**way),
+        reach_m=abs(mount["forward_m"]),
+        seed=seed,
     )
     return clutter.add_clutter(driven, **things, seed=seed)
 
@@ -100,7 +111,9 @@ def prepare_survey(
     """
     if site.waypoints_m is None:
         raise ValueError("a survey needs a building with a way through it")
-    lidar = sensor_models.make_sensor(**settings["sensor"])
+    turning = {key: settings["sensor"][key] for key in _TURNING}
+    beams = {key: value for key, value in settings["sensor"].items() if key not in _TURNING}
+    lidar = sensor_models.make_sensor(turning=sensors.Turning(**turning), **beams)
     base_from_sensor = rover.mount_sensor(**settings["mount"])
     way = plan_motion(site.waypoints_m, base_from_sensor, settings["drive"], seed=seed)
     free = overlays.subtract_areas(site.floor_m, site.obstacles_m)

@@ -156,12 +156,10 @@ def find_partings(
     # shorter ones may be sides of what stands in a room
     is_long = [floor.planar and wall.length_m > 2 * max_door_m for wall in bounds.walls]
     walls = overlays.unite_areas(list(itertools.compress(strips, is_long)))
+    limits = narrow_places.NarrowLimits(opening.max_opening_m, min_area_m2, CELL_M)
     for part in free_space.open_polygons(free, END_M):
         for ends_m in narrow_places.find_narrow_places(
-            *(part, track_m, gaps_m, walls),
-            max_width_m=opening.max_opening_m,
-            min_area_m2=min_area_m2,
-            cell_m=CELL_M,
+            part, track_m, limits, gaps_m=gaps_m, walls=walls
         ):
             is_hidden = 2 * floor.measure_seen_m(ends_m) < math.hypot(*(ends_m[1] - ends_m[0]))
             kind = wall_ground.UNSEEN if is_hidden else GAP

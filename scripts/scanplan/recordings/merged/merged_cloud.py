@@ -6,18 +6,17 @@ that what has no points may be open, or not scanned.
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
-from typing import Any
 
 import numpy as np
 
 from scanplan.errors import MOST_NAMED, StageError
 from scanplan.recordings import frame_edges, map_origin
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.merged import storeys
 from scanplan.recordings.merged.lattice import Lattice, ThinnedCloud
 from scanplan.recordings.merged.views import RayCaster
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import UntimedScans
-from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
 
@@ -54,8 +53,8 @@ class MergedCloud(UntimedScans):
         The files, for errors.
     storey : int or None
         Its number, 0 the lowest; by default the one with most floor.
-    **reading
-        Keywords of `posed_scans.PosedScans`; by default the poses are exact.
+    reading : CloudReading
+        By default the poses are exact.
 
     Raises
     ------
@@ -67,12 +66,11 @@ class MergedCloud(UntimedScans):
         self,
         where: str,
         sources: Sequence[Blocks],
+        reading: CloudReading,
         *,
         storey: int | None = None,
-        units: Units = IN_METRES,
-        **reading: Any,
     ) -> None:
-        self._sources = [partial(_read_metres, blocks, units.cloud_m) for blocks in sources]
+        self._sources = [partial(_read_metres, blocks, reading.units.cloud_m) for blocks in sources]
         self._outline = _thin(where, self._sources, storeys.CELL_M)
         columns = storeys.find_floor(self._outline.keys, self._outline.xyz_m[:, 2])
         self._storeys = storeys.find_storeys(columns)
@@ -96,7 +94,7 @@ class MergedCloud(UntimedScans):
         xyz_m = self._places_m + self._outline.lattice.origin_m
         xyz_m -= map_origin.find_origin(where, xyz_m)
         track = frame_edges.FrameEdge("map", "sensor", xyz_m, level, stamps_ns)
-        super().__init__(where, track, stamps_ns, STATIONS, **reading)
+        super().__init__(where, track, stamps_ns, STATIONS, reading)
 
     def describe_rays(self) -> list[str]:
         """Return what a plan of points alone is worth, and which storeys there are."""

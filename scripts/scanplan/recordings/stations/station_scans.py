@@ -2,17 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from scanplan.errors import StageError
 from scanplan.geometry import se3
-from scanplan.recordings import clouds, frame_edges, map_origin
+from scanplan.recordings import frame_edges, map_origin
+from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.motion.pose_kind import STATIONS
 from scanplan.recordings.posed_scans import UntimedScans
 from scanplan.recordings.stations.angular_grid import STEP_DEG, AngularGrid
-from scanplan.recordings.units import IN_METRES, Units
 from scanplan.stage import log
 from scanplan.types import Array, FloatArray
 
@@ -60,8 +59,8 @@ class StationScans(UntimedScans):
     ----------
     where : str
         What they are from, for errors.
-    **reading
-        Keywords of `posed_scans.PosedScans`; by default the poses are surveyed.
+    reading : CloudReading
+        By default the poses are surveyed.
 
     Raises
     ------
@@ -73,11 +72,9 @@ class StationScans(UntimedScans):
         self,
         where: str,
         stations: Sequence[Station],
-        *,
-        units: Units = IN_METRES,
-        **reading: Any,
+        reading: CloudReading,
     ) -> None:
-        self._unit_m = units.cloud_m
+        self._unit_m = reading.units.cloud_m
         if not stations:
             raise StageError(f"{where}: holds no scan with points; export it again")
         self._stations = stations
@@ -85,10 +82,10 @@ class StationScans(UntimedScans):
         _check_poses(stations, poses)
         stamps_ns = np.arange(1, len(stations) + 1) * _APART_NS
         xyz_m, quat = se3.split_pose(poses)
-        xyz_m = units.pose_m * xyz_m
+        xyz_m = reading.units.pose_m * xyz_m
         xyz_m = xyz_m - map_origin.find_origin(where, xyz_m)
         track = frame_edges.FrameEdge("map", "sensor", xyz_m, quat, stamps_ns)
-        super().__init__(where, track, stamps_ns, STATIONS, **reading)
+        super().__init__(where, track, stamps_ns, STATIONS, reading)
         log.log_line(
             f"{where}: {len(stations)} stations, of each a point for every {STEP_DEG} degrees of"
             " direction"
@@ -118,7 +115,7 @@ class StationScans(UntimedScans):
         if not station.has_colours:
             return None
         grid = _thin(station, self._unit_m, coloured=True)
-        is_in_range = clouds.is_in_range(grid.xyz_m, **self._limits)
+        is_in_range = self._limits.include(grid.xyz_m)
         return None if grid.rgb is None else grid.rgb[is_in_range]
 
 
