@@ -4,8 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from scanplan.edited.differences import count_same
 from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
@@ -108,12 +106,3 @@ def choose_base(path: FilePath, edited: Drawing, bases: Mapping[Path, Drawing]) 
         remedy = "it is of another survey or an older run; edit the newest file"
         raise StageError(f"{path}: {fault}; {remedy}")
     return best
-
-
-def middle_of(row: Row) -> list[float]:
-    """Return the middle of a wall's or an opening's line, to the millimetre."""
-    return _round(np.array([[row["x0_m"], row["y0_m"]], [row["x1_m"], row["y1_m"]]]).mean(axis=0))
-
-
-def _round(place_m: np.ndarray) -> list[float]:
-    return [round(float(value), 3) + 0.0 for value in place_m]
