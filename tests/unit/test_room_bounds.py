@@ -78,6 +78,16 @@ def test_lines_that_show_parts_of_a_pane_show_all_of_it(spans, drawn):
     np.testing.assert_allclose([np.sort(pane.ends[:, 0]) for pane in found], drawn, atol=0.02)
 
 
+@pytest.mark.parametrize(("off_m", "begin_m"), [(0.15, 0.6), (0.25, 1.0)])
+def test_a_pane_goes_on_to_the_end_of_a_wall_in_its_line(off_m, begin_m):
+    """The wall is 0.2 m thick, so that the pane may stand anywhere in it, and ends 0.4 m before."""
+    beside = wall(-2.0, off_m, 0.6, off_m)
+    (pane,) = room_bounds.find_glass_walls(
+        [beside], [(SOUTH, 1.0, 4.0)], min_length_m=0.5, unpaired_m=0.1
+    )
+    np.testing.assert_allclose(np.sort(pane.ends[:, 0]), [begin_m, 4.0], atol=1e-9)
+
+
 def test_panes_that_cross_are_both_drawn():
     across = Line(np.array([2.0, 0.0]), np.array([1.0, 0.0]))
     spans = [(SOUTH, 0.0, 4.0), (across, -1.5, 1.5)]

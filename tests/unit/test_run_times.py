@@ -1,6 +1,6 @@
 import pytest
 
-from scanplan.errors import StageError
+from helpers.refusals import refused
 from scanplan.stage import run_times
 
 
@@ -14,10 +14,18 @@ def test_seconds_are_the_column_s(tmp_path):
 def test_anything_else_is_refused(tmp_path, text):
     path = tmp_path / "job.tsv"
     path.write_text(text)
-    with pytest.raises(StageError, match=r"job\.tsv: is no benchmark file"):
+    with refused(file="job.tsv"):
         run_times.read_job_seconds(path)
 
 
 def test_files_of_chunks_go_by_the_name_of_the_whole():
     files = ["b/walls_one.tsv", "b/walls_two_1-of-2.tsv", "b/walls_two_2-of-2.tsv"]
     assert run_times.group_by_name(files, "walls") == {"one": files[:1], "two": files[1:]}
+
+
+def test_what_a_run_did_not_measure_is_left_out_of_the_sums(tmp_path):
+    """Snakemake writes NA where a job ended before it was looked at."""
+    path = tmp_path / "job.tsv"
+    path.write_text("s\tcpu_time\tmax_rss\n2.5\tNA\t100\n1.5\t4.0\tNA\n")
+    (cost,) = run_times.read_job_costs([path]).values()
+    assert (cost.seconds, cost.cpu_s, cost.memory_mb) == (4.0, 4.0, 100.0)
