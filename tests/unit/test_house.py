@@ -163,6 +163,28 @@ def test_the_document_names_files_that_exist():
     assert places and absent == []
 
 
+STEPS = [title for title in re.findall(r"^## (.+)$", HABITS, re.M) if title.startswith("Add a")]
+"""What CONTRIBUTING.md takes step by step."""
+
+
+def test_the_commonest_changes_are_taken_step_by_step():
+    wanted = {"Add a kind of recording", "Add a label of the model", "Add a column of a table"}
+    assert wanted <= set(STEPS)
+
+
+@pytest.mark.parametrize("title", STEPS)
+def test_steps_lead_to_names_that_there_are(title):
+    """Functions, constants and attributes stand in a file that is named, all else in the rules."""
+    steps = HABITS.partition(f"\n## {title}\n")[2].partition("\n## ")[0]
+    places = re.findall(r"`((?:\w+/)+[\w.]+|\w+\.(?:py|yaml))`", steps)
+    homes = [home / place for place in places for home in (ROOT, PACKAGE, SCRIPTS)]
+    files = [path for home in homes for path in (home.rglob("*.py") if home.is_dir() else [home])]
+    files += (ROOT / "workflow").rglob("*.smk")
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files if path.is_file())
+    names = re.findall(r"`([a-zA-Z_]\w+)(?:\([^`]*\))?`", steps)
+    assert places and [name for name in names if not re.search(rf"\b{name}\b", text)] == []
+
+
 @pytest.mark.parametrize("package", FLOORS)
 def test_a_package_imports_only_downwards(package):
     below = set(FLOORS[FLOORS.index(package) :])
