@@ -94,7 +94,7 @@ MEANINGS = {
     "public_annotated": "share of these fully annotated",
     "lines_over_100": f"lines over {MAX_COLUMNS} columns",
     "duplicate_names": "public functions named as one of another module",
-    "prose_tests": f"tests that hold a phrase of {PHRASE_WORDS} words or more",
+    "prose_tests": f"tests of messages that hold {PHRASE_WORDS} words in a row or more",
     "type_errors": "errors of basedpyright",
 }
 

@@ -18,6 +18,7 @@ from house_shapes import (
     find_chain,
     find_fractions,
     is_length_or_share,
+    marks_interface,
 )
 
 PACKAGE = "scanplan"
@@ -120,10 +121,22 @@ def find_long_parameter_lists(modules: list[Module]) -> list[str]:
 
 
 def find_prose_tests(modules: list[Module]) -> list[str]:
-    """Return `file:line name` of tests that hold what is said word by word."""
+    """Return `file:line name` of tests that hold what is said word by word.
+
+    Modules whose `pytestmark` says that wording is their subject are left out.
+    """
+    of_messages = [
+        module
+        for module in modules
+        if not any(
+            isinstance(statement, ast.Assign)
+            and any(map(marks_interface, ast.walk(statement.value)))
+            for statement in module.tree.body
+        )
+    ]
     return [
         f"{module.path}:{node.lineno} {node.name}"
-        for module in modules
+        for module in of_messages
         for node in ast.walk(module.tree)
         if isinstance(node, Function) and node.name.startswith("test_") and asserts_prose(node)
     ]

@@ -17,7 +17,11 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 MOST_PARAMETERS = 6  # a reader keeps some seven things in mind
 PHRASE_WORDS = 3  # fewer are names, keys or a remedy
 RUN_LINES = 6  # what is shorter is alike by chance: an argument a line, a loop of three
-_WORD = re.compile(r"[A-Za-z]{2,}")
+_PHRASE = re.compile(rf"[A-Za-z]+(?:,? [A-Za-z]+){{{PHRASE_WORDS - 1},}}")
+_TOLD = ("refused", "assert_told")
+"""What holds a line to its keys, values and remedies: `tests/helpers/refusals.py`."""
+_INTERFACE = "wording"
+"""The mark of tests of words that are drawn, shown or named: they are the interface."""
 _LAYOUT = (tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.COMMENT)
 
 
@@ -87,9 +91,15 @@ def find_fractions(function: Function) -> Iterator[ast.Constant]:
 
 
 def asserts_prose(test: Function) -> bool:
-    """Return whether a test holds a phrase of three words or more: in an assertion, or a match."""
-    held = [node.test for node in ast.walk(test) if isinstance(node, ast.Assert)]
+    """Return whether a test holds three words that follow one another, or more.
+
+    In an assertion, a match, or what a line must tell. What is marked `wording` is left out.
+    """
+    if any(marks_interface(mark) for mark in test.decorator_list):
+        return False
+    held: list[ast.expr] = [node.test for node in ast.walk(test) if isinstance(node, ast.Assert)]
     held += [node.value for node in ast.walk(test) if _is_match(node)]
+    held += [node for node in ast.walk(test) if _tells(node)]
     matches = {node.id for node in held if isinstance(node, ast.Name)}
     if matches & {part.arg for part in test.args.args}:
         held += test.decorator_list
@@ -100,11 +110,24 @@ def _is_match(node: ast.AST) -> TypeGuard[ast.keyword]:
     return isinstance(node, ast.keyword) and node.arg == "match"
 
 
-def _is_phrase(node: ast.AST) -> bool:
+def marks_interface(node: ast.AST) -> bool:
+    """Return whether an expression is `pytest.mark.wording`."""
+    return isinstance(node, ast.Attribute) and node.attr == _INTERFACE
+
+
+def _tells(node: ast.AST) -> TypeGuard[ast.Call]:
     match node:
-        case ast.Constant(value=str(text)):
-            return " " in text.strip() and len(_WORD.findall(text)) >= PHRASE_WORDS
+        case ast.Call(func=ast.Name(id=name)) | ast.Call(func=ast.Attribute(attr=name)):
+            return name in _TOLD
     return False
+
+
+def _is_phrase(node: ast.AST) -> bool:
+    return (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, str)
+        and _PHRASE.search(node.value) is not None
+    )
 
 
 def find_repeated(files: Mapping[str, str], *, by_shape: bool) -> dict[str, int]:

@@ -8,7 +8,7 @@ import pytest
 from helpers.correcting import corrected, write_plan
 from helpers.pages import entries, in_sight, needs_browser, text_of
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.wording]
 APART_M2 = 0.02  # the page knows places to the millimetre; gaps between rooms are bridged with 1 cm
 WALL = "wall 5"
 

@@ -28,7 +28,7 @@ from scanplan.project.run.edit_session import EditSession
 from scanplan.store import schemas, tables
 from scanplan.validation import doubts
 
-pytestmark = needs_browser
+pytestmark = [needs_browser, pytest.mark.wording]
 CTRL, SHIFT = 2, 8  # of DevTools' modifier keys
 PHONE = {"width": 360, "height": 640}
 

@@ -22,6 +22,8 @@ from scanplan.project import corrections_file
 from scanplan.project.run.edit_session import EditSession
 from scanplan.store import tables
 
+pytestmark = pytest.mark.wording
+
 PHONE = {"width": 360, "height": 640}
 FIRST_PAINT_MS = 1500
 MOST_BYTES = 5e6

@@ -9,6 +9,8 @@ from thesis import judging
 from thesis.claim_measures import MARGIN
 from thesis.stated_claims import CLAIMS
 
+pytestmark = pytest.mark.wording
+
 
 def judged(kind, tables):
     rows = judging.judge_claims(kind, "seed 1", tables)

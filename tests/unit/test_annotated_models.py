@@ -7,7 +7,7 @@ import pytest
 from bcf.v2.bcfxml import BcfXml
 
 from helpers import ifc_making
-from scanplan.errors import StageError
+from helpers.refusals import refused
 from scanplan.exports.changes.annotated_ifc import annotate_model
 from scanplan.exports.changes.model_facts import carry_ids, gather_changes
 from scanplan.exports.data.model_topics import Topic, format_topics
@@ -37,7 +37,7 @@ def test_an_element_has_its_properties_in_the_unit_of_its_model(tmp_path, millim
 def test_an_element_that_is_not_there_ends_in_a_line(tmp_path):
     path = tmp_path / "made.ifc"
     path.write_bytes(ifc_making.model())
-    with pytest.raises(StageError, match=r"made\.ifc: cannot be read as IFC.*run again"):
+    with refused(file="made.ifc", remedy="run again"):
         annotate_model(path, NAME, {"0" * 22: {"verdict": "within"}})
 
 

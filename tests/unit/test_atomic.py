@@ -9,7 +9,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from scanplan.errors import StageError
+from helpers.refusals import refused
 from scanplan.store import atomic
 
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
@@ -87,7 +87,7 @@ def test_a_full_disk_is_told_with_what_is_left(tmp_path):
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
 def test_no_space_is_told_with_the_file_that_was_written(tmp_path, number):
     with (
-        pytest.raises(StageError, match=r"a.txt: cannot be written \(.*\); .* MB are free"),
+        refused(file="a.txt", value="MB are"),
         atomic.replace_file(tmp_path / "a.txt"),
     ):
         raise OSError(number, "no room")
@@ -96,7 +96,7 @@ def test_no_space_is_told_with_the_file_that_was_written(tmp_path, number):
 
 def test_a_folder_that_is_a_file_is_told(tmp_path):
     (tmp_path / "plan").write_text("in the way")
-    with pytest.raises(StageError, match=r"a.txt: cannot be written .*move away"):
+    with refused(file="a.txt", remedy="move away"):
         atomic.write_text(tmp_path / "plan/a.txt", "text")
 
 
@@ -112,7 +112,7 @@ def test_a_disk_that_fails_is_told_with_the_file(tmp_path, monkeypatch, call):
 
     atomic.write_text(tmp_path / "a.txt", "old")
     monkeypatch.setattr(f"os.{call}", fail)
-    with pytest.raises(StageError, match=r"a.txt: cannot be written \(Input.*\); the disk"):
+    with refused(file="a.txt", value=("Input", "the disk")):
         atomic.write_text(tmp_path / "a.txt", "new")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.txt", "old")]
 
@@ -132,7 +132,7 @@ def test_where_nothing_can_be_removed_the_first_fault_is_told(tmp_path, monkeypa
 
     monkeypatch.setattr("os.unlink", fail)
     with (
-        pytest.raises(StageError, match=r"a.txt: cannot be written \(No space"),
+        refused(file="a.txt", value="No space"),
         atomic.replace_file(tmp_path / "a.txt") as temporary,
     ):
         temporary.touch()

@@ -4,6 +4,7 @@ import struct
 import pytest
 
 from helpers import bag_making
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.recordings import bags
 
@@ -311,10 +312,7 @@ def test_a_message_cut_short_names_its_topic(tmp_path):
 @pytest.mark.recordings
 def test_the_index_of_an_old_bag(recordings_dir):
     path = recordings_dir / "broken" / "bad_index.bag"
-    with pytest.raises(
-        StageError,
-        match=r"bad_index.bag: cannot be read \(its index is damaged\); try `rosbag reindex`",
-    ):
+    with refused(file="bad_index.bag", remedy="rosbag reindex"):
         read_all(path)
 
 
@@ -354,7 +352,7 @@ def test_a_bag_whose_head_is_damaged_is_left_to_its_reader(tmp_path):
     content = bytearray(path.read_bytes())
     content[0] ^= 1
     path.write_bytes(content)
-    with pytest.raises(StageError, match="its beginning is overwritten"), bags.open_bag(path):
+    with refused(file=path.name, value="beginning"), bags.open_bag(path):
         pass
     with bags.open_bag(path, salvage=True) as bag:
         assert {topic.name for topic in bag.topics} >= {"/points", "/amcl_pose"}

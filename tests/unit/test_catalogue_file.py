@@ -5,6 +5,7 @@ import re
 import pytest
 
 from helpers.default_settings import SETTINGS
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.project.catalogue_file import read_catalogue
 
@@ -77,7 +78,7 @@ def test_a_mistake_is_named_with_file_and_entry(tmp_path, old, new, named):
 
 
 def test_a_catalogue_that_is_not_there_is_told(tmp_path):
-    with pytest.raises(StageError, match="does not exist"):
+    with refused(file="none.yaml"):
         read_catalogue(tmp_path / "none.yaml")
 
 
@@ -94,5 +95,5 @@ def test_a_region_has_a_catalogue_of_ours():
 
 
 def test_a_region_that_we_have_not_is_told_with_those_that_we_have():
-    with pytest.raises(StageError, match="atlantis does not exist; give one of north_america"):
+    with refused(value="atlantis", remedy="north_america"):
         read_catalogue("atlantis")

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from helpers.changing_floor import DOOR, INNER, survey
 from helpers.drawn_floor_making import storey
+from helpers.refusals import refused
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.design.design_prior import lay_design
-from scanplan.errors import StageError
 from scanplan.geometry.lines import Line
 from scanplan.plan.model import priors, things
 from scanplan.plan.model.designed_walls import DesignedWalls
@@ -117,6 +117,6 @@ def test_a_design_is_laid_on_a_plan_in_the_frame_of_the_plan(motion):
 
 def test_a_design_of_another_floor_is_refused_in_one_line():
     star = [(0, 0, 3, 1), (3, 1, 9, 0.2), (9, 0.2, 5, 7), (5, 7, 1.2, 4), (1.2, 4, 0, 0)]
-    with pytest.raises(StageError, match=r"design\.ifc: .*; give the design") as fault:
+    with refused(file="design.ifc", remedy="the design") as fault:
         lay_design([storey()], "design.ifc", survey([], [], outer=star).plan)
     assert "\n" not in str(fault.value)

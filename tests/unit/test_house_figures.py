@@ -197,11 +197,28 @@ def test_places_of_what_is_counted_are_told(checkout):
         ('with raises(StageError, match="does not exist any more"): read()', True),
         ('with raises(StageError, match=f"{path}: .* --config"): read()', False),
         ('print("what is asserted nowhere")', False),
+        ('with refused(file="a.bag", remedy="rename it"): read()', False),
+        ('with refused(value="no scan was kept"): read()', True),
+        ("assert \"document.querySelector('#a .b').textContent\" in page", False),
     ],
 )
 def test_tests_of_wording_are_found(body, is_prose):
     (test,) = ast.parse(f"def test_of_it():\n    {body}\n").body
     assert house_shapes.asserts_prose(test) == is_prose
+
+
+@pytest.mark.parametrize("marks", ["@pytest.mark.wording", ""])
+def test_words_that_are_the_interface_are_left_out(marks):
+    (test,) = ast.parse(f'{marks}\ndef test_it():\n    assert "room: 3 doors lead out of it"').body
+    assert house_shapes.asserts_prose(test) == (not marks)
+
+
+def test_modules_of_wording_are_left_out(tmp_path):
+    body = 'def test_it():\n    assert said == "no scan was kept"\n'
+    (tmp_path / "test_a.py").write_text(body)
+    (tmp_path / "test_b.py").write_text(f"pytestmark = pytest.mark.wording\n{body}")
+    found = house_finds.find_prose_tests(house_finds.read_modules(tmp_path))
+    assert found == ["test_a.py:1 test_it"]
 
 
 def test_phrases_of_parameters_count_where_they_are_matched():

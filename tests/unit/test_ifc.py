@@ -15,6 +15,8 @@ from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_origin import ModelOrigin, Site
 
+pytestmark = pytest.mark.wording
+
 SEEN = {"floor_z_m": -0.3, "ceiling_z_m": 2.2}
 
 

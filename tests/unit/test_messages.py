@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers import bag_making
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.recordings import messages
 
@@ -118,7 +119,7 @@ def test_contradicting_layouts(overrides, told):
 
 def test_missing_coordinate_names_the_fields_found():
     message = bag_making.point_cloud2(np.zeros(2, [("x", "<f4"), ("y", "<f4"), ("range", "<f4")]))
-    with pytest.raises(StageError, match=r"no field z .*range, x, y"):
+    with refused(value=("field z", "range, x, y")):
         messages.read_point_cloud(message)
 
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from helpers.refusals import assert_told
 from scanplan.project import dataset_files, overlooked_files
 
 METADATA = "rosbag2_bagfile_information:\n  version: 5\n"
@@ -28,7 +29,7 @@ def test_what_stands_beside_a_single_recording_is_told(tmp_path):
         put(tmp_path / "dataset.yaml"),
     )
     (note,) = overlooked_files.list_overlooked(bag)
-    assert "dataset.yaml, truth.geojson and truth_poses.tum are not used" in note
+    assert_told(note, file=("dataset.yaml", "truth.geojson", "truth_poses.tum"))
     assert note.endswith(f"give the folder {tmp_path} as the dataset")
     put(tmp_path / "run" / "metadata.yaml", METADATA), put(tmp_path / "run" / "x_0.mcap")
     (note,) = overlooked_files.list_overlooked(tmp_path / "run")

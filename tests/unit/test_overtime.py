@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from helpers.default_settings import SETTINGS
+from helpers.refusals import assert_told
 from scanplan.geometry import tour
 from scanplan.stage import overtime
 
@@ -35,7 +36,7 @@ def test_it_names_the_step_its_seconds_and_what_lowers_it():
     assert re.match(r"plan_next_visit: takes long: 2 s, 1\d times as long as expected", line)
     # the innermost public helper of the package
     assert re.search(r"at '(shortest tour|tour length)' for \d s", line)
-    assert "a higher advanced.plan.next_visit.spacing_m or more --cores" in line
+    assert_told(line, key=("advanced.plan.next_visit.spacing_m", "--cores"))
 
 
 def test_it_is_told_again_at_twice_the_time():

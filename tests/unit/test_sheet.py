@@ -21,6 +21,8 @@ from scanplan.store import schemas
 from scanplan.store.doubts import Doubts, Finding
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
 
+pytestmark = pytest.mark.wording
+
 
 def turned(drawn, angle_deg):
     """A plan turned in the map."""

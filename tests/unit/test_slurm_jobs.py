@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scanplan.errors import StageError
+from helpers.refusals import assert_told, refused
 from scanplan.project.run import slurm_jobs
 from scanplan.project.run.slurm_jobs import SlurmJob, end_older_jobs, explain_ends, list_jobs
 
@@ -42,7 +42,7 @@ def test_a_job_is_explained_once_and_not_where_a_second_try_went_well(squeue):
     assert line.startswith("register_scans floor: its Slurm job 9 ran into its time limit of 2:00;")
     assert list(explain_ends(list_jobs(HERE), known=["9"])) == []
     (lost,) = explain_ends(list_jobs(HERE), known=["9", "11", "12"])
-    assert "its Slurm job 10 ran out of its 200M of memory" in lost
+    assert_told(lost, value=("job 10", "200M"))
 
 
 def test_jobs_of_a_killed_run_are_ended_before_another_begins(squeue):
@@ -55,7 +55,7 @@ def test_jobs_of_a_killed_run_are_ended_before_another_begins(squeue):
 def test_jobs_that_do_not_end_stop_the_run(squeue, monkeypatch):
     monkeypatch.setattr(slurm_jobs, "_PATIENCE_S", 0.0)
     monkeypatch.setattr(slurm_jobs.time, "sleep", lambda seconds: None)
-    with pytest.raises(StageError, match="jobs 12 of an earlier run do not end in Slurm"):
+    with refused(value="jobs 12"):
         end_older_jobs(HERE)
 
 

@@ -6,7 +6,7 @@ from contextlib import closing
 import pytest
 
 from helpers import bag_making
-from scanplan.errors import StageError
+from helpers.refusals import refused
 from scanplan.recordings import bags
 from scanplan.store import sqlite_paths
 
@@ -30,7 +30,7 @@ def test_the_limit_is_sqlites_own(tmp_path):
     longer = place(tmp_path / "b", sqlite_paths.LONGEST + 1)
     with pytest.raises(sqlite3.OperationalError, match="unable to open"):
         sqlite3.connect(longer)
-    with pytest.raises(StageError, match=r"a.db3: its whole path has 505 bytes.*, or leave it"):
+    with refused(file="a.db3", value="505 bytes"):
         sqlite_paths.check_sqlite_path(longer, "leave it")
 
 
@@ -39,7 +39,7 @@ def test_a_recording_with_too_long_a_path_is_told(tmp_path):
     recording = maker.write(tmp_path / "run", bag_making.survey(maker, n_scans=3))
     moved = recording.rename(place(tmp_path, 520).parent / "run")
     with (
-        pytest.raises(StageError, match=r"db3: its whole path .* or move the"),
+        refused(value="whole path", remedy="move the"),
         bags.open_bag(moved),
     ):
         pass

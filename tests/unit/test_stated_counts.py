@@ -13,6 +13,7 @@ from rosbags import rosbag1
 from rosbags.rosbag2 import storage_mcap
 
 from helpers import bag_making
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.recordings import bags
 from scanplan.recordings.integrity import unpacking
@@ -82,7 +83,7 @@ def test_a_summary_with_a_wrong_checksum_is_refused(tmp_path):
     path = written(tmp_path, "mcap", alone=True)
     content = path.read_bytes()
     path.write_bytes(content[:-12] + b"\1\2\3\4" + content[-8:])
-    with pytest.raises(StageError, match=r"summary of run.mcap does not fit its checksum"):
+    with refused(file="run.mcap", value="checksum"):
         count_messages(path)
 
 
@@ -180,7 +181,7 @@ def test_a_chunk_larger_than_stated_is_refused(tmp_path, kind):
     content = bytearray(path.read_bytes())
     content[chunk.datapos : chunk.datapos + len(bomb)] = bomb
     path.write_bytes(bytes(content))
-    with pytest.raises(StageError, match="unpack to more than"):
+    with refused(file=path.name, value="unpack to"):
         count_messages(path)
 
 
@@ -188,7 +189,7 @@ def test_a_compressed_message_is_bounded(tmp_path, monkeypatch):
     path = written(tmp_path, "sqlite3_message")
     assert count_messages(path) == TOPICS
     monkeypatch.setattr(unpacking, "MOST_UNPACKED_BYTES", 500)
-    with pytest.raises(StageError, match="unpack to more than 500"):
+    with refused(value=500):
         count_messages(path)
 
 

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from helpers import bag_making
+from helpers.refusals import assert_told, refused
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
@@ -195,7 +196,7 @@ def test_zero_clouds(tmp_path):
         pose = maker.amcl(START, (0, 0, 0))
         connection = writer.add_connection("/amcl_pose", pose.__msgtype__, typestore=maker.store)
         writer.write(connection, START, maker.store.serialize_ros1(pose, pose.__msgtype__))
-    with pytest.raises(StageError, match="zero messages on /points"), opened(tmp_path):
+    with refused(value="/points"), opened(tmp_path):
         pass
 
 
@@ -231,7 +232,7 @@ def test_the_configured_base_is_used_even_across_and_must_be_connected(tmp_path,
         np.testing.assert_allclose(positions(survey)[0], [0.2, 0, 0.5], atol=1e-6)
     with (
         opened(path, base_frame="wheel") as survey,
-        pytest.raises(StageError, match=r"wheel.*base_link, foot, lidar"),
+        refused(value=("wheel", "foot", "lidar"), key="base_link"),
     ):
         survey.pose_edges()
 
@@ -273,7 +274,7 @@ def test_odometry_under_a_map_says_that_tf_is_better(tmp_path, caplog):
     ]
     with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
         np.testing.assert_allclose(positions(survey)[1], [0.1, 0, 1], atol=1e-6)
-    assert "tf places odom in map: set input.pose_topic to /tf" in caplog.text
+    assert_told(caplog.text, value="/tf", key="input.pose_topic")
 
 
 def test_clouds_and_poses_in_bags_of_their_own(tmp_path, maker):
@@ -289,10 +290,7 @@ def test_clocks_that_differ_are_said(tmp_path, maker, caplog):
     ]
     with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
         assert survey.stamps()[0] == START
-    assert (
-        "poses arrive 0.000 s after their stamps, clouds 5.001 s: their clocks may differ"
-        in caplog.text
-    )
+    assert_told(caplog.text, value=("0.000 s", "5.001 s"))
 
 
 def test_a_standing_robot_is_not_placed_twice(tmp_path, maker):
@@ -348,7 +346,7 @@ def test_tf_can_be_asked_for_and_a_mount_set(tmp_path, maker):
         np.testing.assert_allclose(positions(survey)[0], [0, 2, 7], atol=1e-6)
     with (
         opened(path, pose_topic="/tf", base_from_sensor=[0] * 6, base_frame="wheel") as survey,
-        pytest.raises(StageError, match="no frame wheel"),
+        refused(value="frame wheel"),
     ):
         survey.pose_edges()
 
@@ -357,7 +355,7 @@ def test_tf_without_the_sensor(tmp_path, maker):
     entries = [entry for entry in tf_chain(maker) if entry[0] != "/tf_static"]
     with (
         opened(recorded(tmp_path, entries)) as survey,
-        pytest.raises(StageError, match=r"lidar.*base_link, map, odom"),
+        refused(value=("lidar", "map", "odom"), key="base_link"),
     ):
         survey.pose_edges()
 
@@ -395,7 +393,7 @@ def test_a_covariance_that_is_no_number_is_counted_and_its_pose_used(tmp_path, m
             message.pose.covariance[0] = np.nan
     with caplog.at_level("INFO"), opened(recorded(tmp_path, entries)) as survey:
         np.testing.assert_allclose(positions(survey)[:, 0], [0, 0.1, 0.2], atol=1e-6)
-    assert "/amcl_pose: 2 poses with a covariance that is no number" in caplog.text
+    assert_told(caplog.text, value=("/amcl_pose", "2 poses"))
 
 
 def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
@@ -414,7 +412,7 @@ def test_transforms_stamped_ahead_are_taken_back(tmp_path, maker, caplog):
         np.testing.assert_allclose(
             positions(survey), [[i / 10, i > 4, 1] for i in range(10)], atol=1e-6
         )
-    assert "tf map -> odom is stamped 1.000 s ahead of its receipt: taken back" in caplog.text
+    assert_told(caplog.text, value="1.000 s")
 
 
 @pytest.mark.parametrize(("ahead_s", "is_told"), [(0.5, True), (0.01, False)])

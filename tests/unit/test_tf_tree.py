@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.recordings import frame_edges, tf_tree
@@ -177,14 +178,14 @@ def test_what_never_moves_is_mounted_but_a_standing_robot_is_not():
 
 
 def test_cycles_and_two_parents():
-    with pytest.raises(StageError, match="a -> c -> b -> a are a cycle"):
+    with refused(value="a -> c -> b -> a"):
         tf_tree.FrameTree([still("b", "c"), still("a", "b"), still("c", "a")]).world_root("a")
     two = tf_tree.FrameTree([still("a", "x"), still("b", "x"), still("x", "lidar")])
-    with pytest.raises(StageError, match="x hangs on a and b"):
+    with refused(value=("x", "a and b")):
         two.world_root("lidar")
     assert names(two.path("x", "lidar")) == [("x", "lidar")]
     assert names(two.path("lidar", "x")) == [("lidar", "x")]
-    with pytest.raises(StageError, match="x hangs on a and b"):
+    with refused(value=("x", "a and b")):
         two.path("a", "lidar")
 
 
@@ -217,7 +218,7 @@ def test_a_mounting_that_is_broadcast_over_two_chains_is_one():
 def test_chains_that_do_not_agree_are_told(direct):
     robot = [moving("odom", "base"), still("base", "mount", (1, 0, 0), QUARTER)]
     tree = tf_tree.FrameTree([*robot, still("mount", "laser", (2, 0, 0)), direct])
-    with pytest.raises(StageError, match=r"laser hangs on .*base_from_sensor"):
+    with refused(key="base_from_sensor"):
         tree.path("odom", "laser")
 
 

@@ -3,6 +3,7 @@
 import pytest
 
 from helpers import odd_files
+from helpers.refusals import refused
 from scanplan.errors import StageError
 from scanplan.project.user_file import find_file, read_text
 from scanplan.project.yaml_file import read_yaml
@@ -34,7 +35,7 @@ def test_what_is_no_file_is_told_and_not_opened(tmp_path, put, said):
 def test_a_file_is_found_where_there_is_one(tmp_path):
     path = tmp_path / "dataset.yaml"
     assert find_file(path, "") is None
-    with pytest.raises(StageError, match="does not exist; write one"):
+    with refused(file="dataset.yaml", remedy="write one"):
         read_text(path, "write one")
     path.write_text("a: ü")
     (tmp_path / "link").symlink_to(path)
@@ -46,7 +47,7 @@ def test_a_file_larger_than_people_write_is_not_read(tmp_path):
     path = tmp_path / "dataset.yaml"
     path.write_text("a: 1\n" * 10)
     assert read_text(path, "", most_bytes=50)
-    with pytest.raises(StageError, match=r"has 50 bytes, at most 49 are read; leave out"):
+    with refused(value=("50 bytes", "most 49")):
         read_text(path, "", most_bytes=49)
     path.write_text("".join(f"k{i}: 1\n" for i in range(10**6)))
     with pytest.raises(StageError, match=r"at most 262,144 are read"):
