@@ -44,11 +44,11 @@ def write_report(
     Parameters
     ----------
     files : dict of str to path-like, or list of path-like
-        `faces`, `walls`, `openings`, `rooms`, `free`, `evidence`, `segments`, `validation`,
-        `confidence`, `questions`, `standpoints` of plan/, the latter four an empty list each where
-        their stage failed; `scans`, `selection`, `poses`, `registration`; `page` (templates, CSS,
-        JavaScript); `figures`; `evaluation` (plan.parquet and walls.parquet, as far as they are
-        known); `recordings`; `results`; `corrections`, if there are any.
+        `faces`, `walls`, `openings`, `rooms`, `free`, `furniture`, `evidence`, `segments`,
+        `validation`, `confidence`, `questions`, `standpoints` of plan/, the latter four an empty
+        list each where their stage failed; `scans`, `selection`, `poses`, `registration`; `page`
+        (templates, CSS, JavaScript); `figures`; `evaluation` (plan.parquet and walls.parquet, as
+        far as they are known); `recordings`; `results`; `corrections`, if there are any.
     output : path-like
         report.html or comparison.html, to write.
     settings : dict
@@ -60,7 +60,9 @@ def write_report(
     storeys : iterable of (str, str)
         Names and datasets of the storeys of its building, from the lowest up, if it is of one.
     """
-    plan = floorplan_files.read_floorplan(files, name)
+    export = settings["plan"]["export"]
+    assumed_m = {key: export[key] for key in ("assumed_thickness_m", "assumed_height_m")}
+    plan = floorplan_files.read_floorplan(files, name, **assumed_m)
     survey = _read_survey(files, settings["selection"]["stop"])
     drawn = _draw_pictures(plan, survey, files["scans"])
     recorded = [("recording", Path(path).name, _size(path)) for path in files["recordings"]]

@@ -158,6 +158,7 @@ def _furniture(pieces, motion):
     return {
         "furniture": np.arange(n, dtype=np.int32),
         "kind": np.full(n, "furniture", object),
+        "named": np.full(n, "", object),
         "area_m2": np.array([p.area for p in pieces], float),
         "z_min_m": np.full(n, np.nan),
         "z_max_m": np.full(n, np.nan),

@@ -26,6 +26,7 @@ SETTINGS = {
         "method": "wall_length",
         "extractor": "cluster_ransac",
         "merge": {"max_angle_deg": 10.0, "merge_distance_m": 0.1, "min_scans": 2},
+        "export": {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5},
     },
 }
 SCAN_IDS = [0, 5, 9, 12, 20]
@@ -200,6 +201,7 @@ def files(folder):
         "openings": (schemas.OPENINGS, floorplan_making.openings()),
         "rooms": (schemas.ROOMS, floorplan_making.rooms()),
         "free": (schemas.FREE, floorplan_making.free()),
+        "furniture": (schemas.FURNITURE, floorplan_making.furniture()),
         "evidence": (schemas.EVIDENCE, floorplan_making.evidence()),
         "selection": (schemas.SELECTION, selection()),
         "segments": (schemas.WALLS, segments()),

@@ -75,6 +75,22 @@ def test_a_kind_is_drawn_at_once_and_joins_a_width_said_of_the_same_opening(page
     assert box == pytest.approx([1.1, -2.0], abs=0.01)
 
 
+def test_what_is_drawn_anew_hides_the_symbol_that_it_takes_the_place_of(page):
+    # opening 1 is in wall 5, opening 0 in wall 4
+    shown = (
+        "[0, 1, 2].filter((n) => getComputedStyle(document.querySelector("
+        "`#finished [data-opening='opening ${n}']`)).display !== 'none')"
+    )
+    assert page.run(shown) == [0, 1, 2]
+    show(page, "opening 1")
+    press(page, "It is a window", "#card")
+    show(page, "wall 4")
+    press(page, "Nothing is there", "#card")
+    assert page.run(shown) == [2]
+    press(page, "Undo", "#corrections")
+    assert page.run(shown) == [0, 2]
+
+
 def test_a_name_that_is_typed_and_left_is_kept_and_shown(page):
     show(page, "room 1")
     type_into(page, "#card [name=name]", "Küche <b>")

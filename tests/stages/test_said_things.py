@@ -8,7 +8,8 @@ import shapely
 
 from helpers import floorplan_making
 from helpers.correcting import corrected, write_plan
-from scanplan.exports.drafting.leaves import find_leaves, find_swings
+from scanplan.exports.sheet.leaves import find_leaves
+from scanplan.exports.sheet.openings import find_swings
 from scanplan.report.wording import state_lengths
 from scanplan.store import schemas, tables
 

@@ -23,7 +23,7 @@ from helpers.editing import (
 from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.dxf_reading import read_facts
 from scanplan.errors import StageError
-from scanplan.exports.drafting.leaves import find_swings
+from scanplan.exports.sheet.openings import find_swings
 from scanplan.project.run.command import main
 
 FILES = ("plan.openplan3d.json", "plan.ifc", "presentation.ifc", "plan.dxf", "presentation.dxf")

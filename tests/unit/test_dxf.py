@@ -99,13 +99,13 @@ def test_openings_are_blocks_with_attributes_as_wide_as_they_are():
         if not insert.dxf.name.startswith("ROOM-STAMP")
     }
     assert {tag: insert.dxf.name for tag, insert in inserts.items()} == {
-        "door-0": "DOOR-1", "door-1": "DOOR-1", "window-2": "WINDOW"
+        "door-0": "DOOR", "door-1": "DOOR", "window-2": "WINDOW"
     }  # fmt: skip
     assert {tag: insert.dxf.layer for tag, insert in inserts.items()} == {
         "door-0": "A-DOOR", "door-1": "A-DOOR", "window-2": "A-GLAZ"
     }  # fmt: skip
     scales = {tag: (i.dxf.xscale, i.dxf.yscale) for tag, i in inserts.items()}
-    assert scales["door-1"] == pytest.approx((0.9, 0.9))
+    assert scales["door-1"] == pytest.approx((0.9, 0.1))
     assert scales["window-2"] == pytest.approx((1.2, 0.2))
     window = attributes(inserts["window-2"])
     assert (window["WIDTH"], window["SILL"], window["LINTEL"]) == ("1.20", "0.90", "2.10")
@@ -282,8 +282,8 @@ def test_extent_and_view_are_those_of_the_plan():
     low, high = document.header["$EXTMIN"], document.header["$EXTMAX"]
     assert low[0] < -0.2 and high[0] > 7.2 and high[0] - low[0] < 20
     port = document.viewports.get_config("*Active")[0]
-    # the middle of the walls, from 0 to 7 m, and of a door that swings out by 0.9 m
-    assert port.dxf.center.isclose((3.05, 1.5), abs_tol=0.05)
+    # the middle of the walls, from -0.2 to 7.2 m
+    assert port.dxf.center.isclose((3.5, 1.5), abs_tol=0.05)
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ def put(made, results, name):
     (results / "plan").mkdir(parents=True, exist_ok=True)
     shutil.copy(made / name.rpartition("/")[2], results / name)
     if name == "plan/walls.parquet":
-        for table in ("faces", "openings", "rooms", "free"):
+        for table in ("faces", "openings", "rooms", "free", "furniture"):
             shutil.copy(made / f"{table}.parquet", results / f"plan/{table}.parquet")
 
 

@@ -9,10 +9,10 @@ from helpers import floorplan_making
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
 from scanplan.exports.drafting import fixtures
-from scanplan.exports.drafting.leaves import find_swings
 from scanplan.exports.drafting.presentation import compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.ifc_elements import furniture as ifc_furniture
+from scanplan.exports.sheet.openings import find_swings
 from scanplan.plan.corrections import applying, rows
 from scanplan.project import corrections_file
 from scanplan.project.corrections_file import read_corrections

@@ -13,7 +13,8 @@ from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
-from scanplan.exports.sheet.marks import Symbol, Word, flatten
+from scanplan.exports.sheet.marks import Word, flatten
+from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
@@ -376,26 +377,23 @@ def test_what_a_chain_states_is_not_written_again():
 def test_an_opening_in_an_assumed_wall_lies_in_its_middle():
     east = ((7.1, 1.0, 7.1, 2.0), 1, "window", 0.9, 2.1, 1, -1)
     drawn = plan(openings=floorplan_making.openings([east]))
-    (window,) = content.list_symbols(drawn)
+    (window,) = list_symbols(drawn)
     # seen from the west, the wall is assumed 0.1 m thick behind x = 7.1
     np.testing.assert_allclose(window.ends_m[:, 0], 7.15)
     assert window.thickness_m == pytest.approx(0.1)
     assert drawn.assumed.bounds[0] == pytest.approx(7.1, abs=1e-3)
 
 
-@pytest.mark.parametrize(("width_m", "block"), [(0.9, "DOOR-1"), (1.25, "DOOR-1"), (1.6, "DOOR-2")])
-def test_doors_swing_both_ways_as_far_as_their_leaves_are_wide(width_m, block):
-    ends_m = np.array([[2.0, 1.0], [2.0 + width_m, 1.0]])
-    door = Symbol("door", ends_m, 0.1, "door-0", "")
-    assert symbols.choose_block(door) == block
-    leaf_m = width_m / (2 if block == "DOOR-2" else 1)
-    drawn = np.concatenate([flatten(path) for path in symbols.symbol_paths(door)])
-    assert drawn[:, 1].min() == pytest.approx(1 - leaf_m)
-    assert drawn[:, 1].max() == pytest.approx(1 + leaf_m)
-    for path in symbols.symbol_paths(door)[1::2]:
-        hinge = path[0, :2] - [0, leaf_m]
-        radii = np.hypot(*(flatten(path) - hinge).T)
-        np.testing.assert_allclose(radii, leaf_m)
+def test_doors_swing_as_their_leaves_stand_in_walls_of_any_drawing():
+    # door 0 is 0.9 m wide in the middle of a wall of 0.1 m
+    (x, y0), (_, y1) = list_symbols(plan())[0].ends_m
+    stands = shapely.box(x, y0 - 0.02, x + y1 - y0, y0 + 0.02)
+    leaf = floorplan_making.furniture([stands], "leaf")
+    assert [symbol.kind for symbol in list_symbols(plan())[:2]] == ["door", "door"]
+    swung, other = list_symbols(plan(furniture=leaf))[:2]
+    assert (swung.kind, other.kind) == ("swing", "door")
+    drawn = np.concatenate([flatten(path) for path in symbols.symbol_paths(swung)])
+    assert drawn[:, 0].max() == pytest.approx(x + swung.thickness_m / 2 + y1 - y0)
 
 
 def test_doubt_is_marked_told_and_on_layers_of_its_own():
@@ -460,7 +458,7 @@ def test_a_passage_in_no_wall_is_drawn_as_what_is_inferred():
 
 def test_what_was_not_seen_of_a_room_is_dotted():
     unseen = floorplan_making.openings([((10, 0, 10, 2), -1, "unseen", np.nan, np.nan, 1, -1)])
-    (blank,) = [m for m in content.draw_walls(plan(unseen=unseen)) if m.kind == "not-seen"]
+    (blank,) = content.draw_unseen(plan(unseen=unseen))
     assert shapely.LineString(blank.paths[0][:, :2]).length == 2
 
 

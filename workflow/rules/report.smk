@@ -63,6 +63,7 @@ REPORT_TABLES = {
     "openings": plan_table("openings"),
     "rooms": plan_table("rooms"),
     "free": plan_table("free"),
+    "furniture": plan_table("furniture"),
     "evidence": plan_table("evidence"),
     "validation": if_kept("results/{dataset}/plan/validation.parquet"),
     "questions": if_kept("results/{dataset}/plan/questions.parquet"),

@@ -28,12 +28,10 @@ from scanplan.project import user_file
 from scanplan.types import FilePath, FloatArray
 
 KINDS = {
-    "DOOR-1": "door",
-    "DOOR-2": "door",
+    "DOOR": "door",
     "SWING-LEFT": "door",
     "SWING-RIGHT": "door",
     "SWING-2": "door",
-    "DOORWAY": "door",
     "SLIDING": "sliding door",
     "WINDOW": "window",
     "PASSAGE": "passage",

@@ -28,7 +28,7 @@ def format_svg_sheet(sheet: Sheet) -> str:
     """
     width, height = sheet.page.size_mm
     x0, y0, x1, y1 = plan_extent_mm(sheet)
-    drawn = " ".join(map(_number, (x0, height - y1, x1 - x0, y1 - y0)))
+    drawn = " ".join(map(format_number, (x0, height - y1, x1 - x0, y1 - y0)))
     name = escape(sheet.name)
     rows = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -61,7 +61,7 @@ def _style_rules() -> Iterator[str]:
 
 
 def _format_mark(mark: Mark, height: float) -> str:
-    drawn = "".join(_format_path(path, height, closed=mark.closed) for path in mark.paths)
+    drawn = "".join(format_path(path, height, closed=mark.closed) for path in mark.paths)
     name = f' id="{escape(mark.element)}"' if mark.element else ""
     doubt = ' class="doubtful"' if mark.verify else ""
     title = escape(clean_text(mark.title))
@@ -70,10 +70,11 @@ def _format_mark(mark: Mark, height: float) -> str:
     return f'<path{name}{doubt} d="{drawn}"/>'
 
 
-def _format_path(path: FloatArray, height: float, *, closed: bool) -> str:
+def format_path(path: FloatArray, height: float = 0.0, *, closed: bool) -> str:
+    """Return a path (n, 3), x, y and bulge, as the `d` of an SVG path, y down from a height."""
     # an outline is closed by a line, but where it ends in an arc
     points = path[:-1] if closed and path[-2, 2] == 0 else path
-    places = [f"{_number(x)} {_number(height - y)}" for x, y, _ in points]
+    places = [f"{format_number(x)} {format_number(height - y)}" for x, y, _ in points]
     steps = [_format_step(*pair) for pair in pairwise(points)]
     drawn = "".join(f"{step}{place}" for step, place in zip(["M", *steps], places, strict=True))
     return f"{drawn}{'Z' if closed else ''}"
@@ -84,31 +85,32 @@ def _format_step(start: FloatArray, end: FloatArray) -> str:
     bulge = float(start[2])
     if bulge == 0:
         return "L"
-    radius = math.dist(start[:2], end[:2]) * (1 + bulge**2) / (4 * abs(bulge))
+    radius = format_number(math.dist(start[:2], end[:2]) * (1 + bulge**2) / (4 * abs(bulge)))
     # y points down here: what turns left on the sheet turns against SVG's sense
     is_large, is_right = int(abs(bulge) > 1), int(bulge < 0)
-    return f"A{_number(radius)} {_number(radius)} 0 {is_large} {is_right} "
+    return f"A{radius} {radius} 0 {is_large} {is_right} "
 
 
 def _format_word(word: Word, height: float) -> str:
     # the baseline lies half of a capital's height below the middle
     x, y = word.place - rotation(word.turn_deg)[:, 1] * word.size_mm / 2
     y = height - y
-    turn = f' transform="rotate({_number(-word.turn_deg)} {_number(x)} {_number(y)})"'
+    turn = f' transform="rotate({_numbers((-word.turn_deg, x, y))})"'
     # other fonts are squeezed to the width that the place was chosen by
     length = measure_width_mm(word.text, word.size_mm)
     size = font_size_mm(word.size_mm)
     return (
-        f'<text x="{_number(x)}" y="{_number(y)}" font-size="{_number(size)}"'
-        f' text-anchor="{_ANCHORS[word.align]}" textLength="{_number(length)}"'
+        f'<text x="{format_number(x)}" y="{format_number(y)}" font-size="{format_number(size)}"'
+        f' text-anchor="{_ANCHORS[word.align]}" textLength="{format_number(length)}"'
         f' lengthAdjust="spacingAndGlyphs"{turn if abs(word.turn_deg) > 1e-6 else ""}>'
         f"{escape(word.text)}</text>"
     )
 
 
 def _numbers(values: tuple[float, ...]) -> str:
-    return " ".join(map(_number, values))
+    return " ".join(map(format_number, values))
 
 
-def _number(value: float) -> str:
+def format_number(value: float) -> str:
+    """Return a number to a thousandth, as short as it can be written."""
     return f"{round(float(value), 3) + 0.0:g}"

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from scanplan.errors import StageError
+from scanplan.exports.svg import format_number
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.report import point_image, top_view
 from scanplan.report.chart import MARGIN_M
@@ -19,7 +20,7 @@ from scanplan.report.plan_view import plan_svg
 from scanplan.store import schemas, tables
 from scanplan.types import Columns, FloatArray
 
-_PLAN = ("faces", "walls", "openings", "rooms", "free")
+_PLAN = ("faces", "walls", "openings", "rooms", "free", "furniture")
 _STRAY_PERCENT = 0.5  # of points at either end: single returns from far outside
 Part = tuple[str, str, FloatArray]
 """A line of what is there, its elements, and places (n, 2) that are to be in the picture."""
@@ -49,7 +50,7 @@ def draw_growing_plan(results: Path) -> dict[str, object]:
         return {"svg": "", "said": []}
     places_m = np.concatenate([places_m for *_, places_m in parts])
     low_m, high_m = places_m.min(axis=0) - MARGIN_M, places_m.max(axis=0) + MARGIN_M
-    box = " ".join(plan_svg.format_number(v) for v in (low_m[0], -high_m[1], *(high_m - low_m)))
+    box = " ".join(format_number(v) for v in (low_m[0], -high_m[1], *(high_m - low_m)))
     label = "What is there of the plan"
     drawn = "\n".join(drawn for _, drawn, _ in parts)
     svg = f'<svg id="plan" viewBox="{box}" role="img" aria-label="{label}">\n{drawn}\n</svg>'
@@ -83,8 +84,7 @@ def _draw_segments(results: Path) -> Iterator[Part]:
     scans = tables.read_table(results / "registration.parquet", schemas.REGISTRATION)
     chosen = np.isin(scans["scan_id"], segments["scan_id"])
     dots = [
-        f'<circle class="chosen" cx="{plan_svg.format_number(x_m)}"'
-        f' cy="{plan_svg.format_number(-y_m)}" r="0.12"/>'
+        f'<circle class="chosen" cx="{format_number(x_m)}" cy="{format_number(-y_m)}" r="0.12"/>'
         for x_m, y_m in _list_places(scans)[chosen]
     ]
     yield f"{chosen.sum():,} scans that the plan is made of", "".join(dots), np.zeros((0, 2))
@@ -100,7 +100,7 @@ def _draw_plan(results: Path) -> Iterator[Part]:
     files = {name: (folder or results / "plan") / f"{name}.parquet" for name in _PLAN}
     plan = floorplan_files.read_floorplan(files, results.name)
     bounds_m = np.stack(plan.bounds_m)
-    drawn = [*plan_svg.draw_rooms(plan), *plan_svg.draw_walls(plan), *plan_svg.draw_openings(plan)]
+    drawn = [*plan_svg.draw_rooms(plan), *plan_svg.draw_finished(plan)]
     n_walls, n_rooms = len(plan.walls["wall"]), len(plan.rooms["room"])
     yield f"{n_walls} walls and {n_rooms} rooms", "\n".join(drawn), bounds_m
     yield "", "\n".join(plan_svg.draw_labels(plan)), bounds_m

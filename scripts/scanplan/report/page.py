@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
+from scanplan.exports.sheet.symbols import list_blocks
 from scanplan.plan import floorplan
 from scanplan.report import (
     chart,
@@ -240,6 +241,7 @@ def _script_data(
         "objective": objective,
         "corrections": run.corrections,
         "survey": run.survey,
+        "symbols": list_blocks(),
         "made": hashlib.sha256(f"{drawn}{run.corrections}".encode()).hexdigest()[:_DIGITS],
     }
 

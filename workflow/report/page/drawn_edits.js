@@ -1,6 +1,6 @@
 // changes drawn over the plan: at once, and as what they are until the plan is made anew
 (() => {
-  const { plan } = planView;
+  const { plan, data } = planView;
   const group = document.getElementById("edits");
   const ticks = document.getElementById("ticks");
   const thin = 0.1; // metres that a wall of unknown thickness is drawn with
@@ -19,11 +19,23 @@
   };
   const thickness = (element) => Number(edits.partOf(element)?.dataset.thickness) || thin;
   const shape = (element) => edits.partOf(element).getAttribute("d");
+  // symbols of openings, or of those of a wall, give way to what is drawn anew
+  const symbols = (attribute, element) => plan.querySelectorAll(`#finished [data-${attribute}="${element}"]`);
+  const hide = (attribute, element) => { for (const symbol of symbols(attribute, element)) symbol.classList.add("off"); };
 
+  // the symbol of sheets: along its line from 0 to 1, across it in widths of the wall
+  function drawSymbol(kind, [[x0, y0], [x1, y1]], width) {
+    const [dx, dy] = [x1 - x0, y1 - y0];
+    const w = width / Math.hypot(dx, dy);
+    return data.symbols[kind].map((path) => trace(path.map(([u, v]) => [x0 + u * dx - v * w * dy, y0 + u * dy + v * w * dx]))).join("");
+  }
   function drawWall(entry, element, number) {
     const old = element && thickness(element);
     if (element && entry.action === "keep") return;
-    if (element) draw("cover", shape(element), old + 0.04);
+    if (element) {
+      draw("cover body", edits.partOf(element).dataset.body, 0.04);
+      hide("host", element);
+    }
     if (entry.action === "remove" || entry.kind) return void draw(`gone ${entry.kind ?? ""}`, shape(element));
     const width = entry.thickness_m || old || thin;
     draw("solid", entry.line ? trace(entry.line) : shape(element), width, entry.action === "add" ? { "data-entry": number } : {});
@@ -33,7 +45,10 @@
     const part = element && edits.partOf(element);
     const wall = part ? `wall ${part.dataset.wall}` : edits.nearest("wall", edits.middle(entry.line));
     const width = wall && edits.partOf(wall) ? thickness(wall) : thin;
-    if (part) draw("solid", shape(element), width);
+    if (part) {
+      draw("solid", shape(element), width);
+      hide("opening", element);
+    }
     if (entry.action === "remove") return;
     if (entry.swing) {
       const jambs = entry.line ?? edits.lineOf(element);
@@ -43,7 +58,8 @@
     const line = entry.line ?? (entry.width_m ? edits.widen(edits.lineOf(element), entry.width_m) : null);
     const d = line ? trace(line) : shape(element);
     draw("cover", d, width + 0.04);
-    draw(`opening ${entry.kind ?? part.dataset.kind}`, d, 0, entry.action === "add" ? { "data-entry": number } : {});
+    const kind = entry.kind ?? part.dataset.kind;
+    draw(`opening ${kind}`, drawSymbol(kind, line ?? edits.lineOf(element), width), 0, entry.action === "add" ? { "data-entry": number } : {});
   }
   function relabel(element, words, isArea) {
     const label = plan.querySelector(`[data-label="${element}"]`);
@@ -97,6 +113,7 @@
   function redraw() {
     group.replaceChildren();
     ticks.replaceChildren();
+    for (const symbol of plan.querySelectorAll("#finished .off")) symbol.classList.remove("off");
     for (const [label, texts] of labels) {
       label.classList.remove("off");
       [...label.children].forEach((text, i) => {

@@ -19,9 +19,10 @@ from scanplan.exports.changes.compared_sheet import (
     draw_areas,
     say_tie,
 )
-from scanplan.exports.sheet import content, title
+from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.marks import Mark, Symbol
+from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import Page
 from scanplan.plan.floorplan import say_count
 
@@ -40,7 +41,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
     # what is doubtful of the earlier plan is told by its own sheet
     symbols = [
         replace(symbol, verify=False, facts={})
-        for symbol in content.list_symbols(compared.a.plan)
+        for symbol in list_symbols(compared.a.plan)
         if not _is_of(symbol, changed)
     ]
     told = [

@@ -19,9 +19,10 @@ from scanplan.exports.changes.compared_sheet import (
     compose_compared_sheet,
     draw_areas,
 )
-from scanplan.exports.sheet import content, title
+from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.marks import Mark
+from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import Page
 from scanplan.geometry import overlays
 from scanplan.plan.floorplan import FloorPlan, say_count
@@ -31,9 +32,7 @@ _TOLD = ("wall", "opening", "column")
 
 def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
     """Compose the sheet of a plan of several surveys, in the frame of the first."""
-    symbols = [
-        replace(symbol, verify=False, facts={}) for symbol in content.list_symbols(grown.plan)
-    ]
+    symbols = [replace(symbol, verify=False, facts={}) for symbol in list_symbols(grown.plan)]
     told = [
         Told(say_change(change, facts.locale.fine[0]), change.shape)
         for step in grown.steps

@@ -10,9 +10,9 @@ import shapely
 from scanplan.exports.data import element_ids
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.data.openplan_walls import DrawnWall, draw_walls, list_around
-from scanplan.exports.drafting.leaves import find_swings
 from scanplan.exports.model_origin import ModelOrigin
 from scanplan.exports.opening_extents import vertical_extent_m
+from scanplan.exports.sheet.openings import find_swings
 from scanplan.geometry.polygons import long_axis_m
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan

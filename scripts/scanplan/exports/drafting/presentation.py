@@ -8,14 +8,14 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.fixtures import draw_fixtures
-from scanplan.exports.drafting.leaves import draw_swing, find_leaves
 from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
 from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
 from scanplan.exports.sheet.locale import Locale
-from scanplan.exports.sheet.marks import Mark, Symbol, straight
+from scanplan.exports.sheet.marks import Mark, Symbol
+from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
@@ -102,13 +102,8 @@ def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str])
 
 
 def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
-    for row, area in enumerate(plan.areas):
-        name, number = clean_text(plan.room_names[row]), plan.rooms["room"][row]
-        facts = {"name": name, **content.facts_of("room", plan.rooms, row)}
-        yield content.draw_area("room", area, f"room-{number}", name, facts, of=plan)
-    unseen_m = floorplan.centrelines_m(plan.unseen)
-    for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
-        yield Mark("not-seen", [straight(line_m)], element=f"not-seen-{number}", title="not seen")
+    yield from content.draw_rooms(plan)
+    yield from content.draw_unseen(plan)
     yield from content.draw_axes(plan)
     yield from content.draw_surfaces(plan)
     cut_out = overlays.unite_areas(
@@ -152,7 +147,6 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     has neither leaf nor pane and leads from a room into itself. Panes in no wall are drawn as far
     as they bound a room.
     """
-    leaves = find_leaves(plan.furniture)
     lines_m = floorplan.centrelines_m(plan.openings)
     near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, CORNER_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
@@ -161,13 +155,11 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     # a hole in a wall of no room is one all the same
     is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
     is_none |= (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
-    for row, symbol in enumerate(content.list_symbols(plan)):
+    for row, symbol in enumerate(list_symbols(plan)):
         if is_none[row]:
             continue
         if plan.hosts[row] < 0 and symbol.kind in _PANES:
             yield replace(symbol, ends_m=_limit_line(symbol.ends_m, along[row]))
-        elif symbol.kind == "door":
-            yield draw_swing(symbol, leaves)
         else:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
 

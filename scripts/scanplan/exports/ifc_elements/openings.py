@@ -10,7 +10,6 @@ import shapely
 from ifcopenshell import entity_instance
 from shapely.geometry import Polygon
 
-from scanplan.exports.drafting.leaves import Swing
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
     NOMINAL,
@@ -21,6 +20,7 @@ from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
 from scanplan.exports.sheet.marks import Symbol
+from scanplan.exports.sheet.openings import Swing
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
@@ -28,7 +28,6 @@ from scanplan.plan.floorplan import WAYS
 
 _FILLED_BY = {"door": "IfcDoor", "window": "IfcWindow", "glass": "IfcWindow"}
 _LISTED_AS = {"door": "doors", "window": "windows"}  # lists of the catalogue
-_DRAWN_AS = {"door": "doorway"}
 _OPERATIONS = {
     "SWING-LEFT": "SINGLE_SWING_LEFT",
     "SWING-RIGHT": "SINGLE_SWING_RIGHT",
@@ -183,7 +182,7 @@ def _list_curves(
     # hinged in the side of the wall that it opens to
     y_m = 0.0 if swing is None or swing.block == "SLIDING" else thickness_m / 2
     ends_m = np.array([[0.0, y_m], [width_m, y_m]])
-    symbol = Symbol(_DRAWN_AS.get(kind, kind), ends_m, thickness_m, "", "")
+    symbol = Symbol(kind, ends_m, thickness_m, "", "")
     if swing is not None:
         symbol = replace(symbol, kind="swing", block=swing.block)
     return [model.path(path) for path in symbol_paths(symbol)]

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.drafting.leaves import Swing, find_swings
 from scanplan.exports.drafting.regular_plan import MEASURED
+from scanplan.exports.sheet.openings import Swing, find_swings
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns
 

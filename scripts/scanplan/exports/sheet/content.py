@@ -1,4 +1,4 @@
-"""What of a plan is drawn on a sheet: walls, openings and rooms as marks in the map frame."""
+"""What of a plan is drawn, on sheets and in the report: rooms and walls as marks, map frame."""
 
 from collections.abc import Iterator
 
@@ -8,12 +8,12 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet.lettering import clean_text
-from scanplan.exports.sheet.marks import Facts, Mark, Symbol, straight
+from scanplan.exports.sheet.marks import Facts, Mark, straight
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import NO_CIRCLES
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import BoolArray, Columns, FloatArray
+from scanplan.types import BoolArray, Columns
 from scanplan.validation import doubts
 
 _FACTS = {
@@ -69,21 +69,29 @@ def is_corrected(columns: Columns) -> BoolArray:
     return np.asarray(columns.get("corrected", np.full(n_rows, "")), str) != ""
 
 
-def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
-    """Yield rooms, what was not seen in and between them, walls by what is known, and surfaces."""
+def draw_rooms(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield the rooms, in the order of their table."""
     doubtful = doubts.find_doubtful_rooms(plan)
     for row, area in enumerate(plan.areas):
         room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
-        yield draw_area(
-            "room", area, f"room-{room}", name, facts, verify=bool(doubtful[row]), of=plan
-        )
-    for number, part in enumerate([*plan.hidden_floor, *plan.enclosed_ground]):
-        yield draw_area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
+        is_doubted = bool(doubtful[row])
+        yield draw_area("room", area, f"room-{room}", name, facts, verify=is_doubted, of=plan)
+
+
+def draw_unseen(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield the spans of rooms' outlines of which nothing is known."""
     unseen_m = floorplan.centrelines_m(plan.unseen)
     for number, line_m in zip(plan.unseen["opening"], unseen_m, strict=True):
         path = [straight(line_m)]
         yield Mark("not-seen", path, element=f"not-seen-{number}", title="not seen")
+
+
+def draw_walls(plan: FloorPlan) -> Iterator[Mark]:
+    """Yield ground and outlines that were not seen, walls by what is known, and surfaces."""
+    for number, part in enumerate([*plan.hidden_floor, *plan.enclosed_ground]):
+        yield draw_area("hidden", part, f"hidden-{number}", f"not seen, {part.area:.1f} m²")
+    yield from draw_unseen(plan)
     assumed = [*list_polygons(plan.assumed)]
     for number, part in enumerate(assumed):
         title = f"wall, assumed {plan.assumed_thickness_m:.2f} m thick"
@@ -167,41 +175,6 @@ def draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
         yield draw_area(kind, outline, f"{kind}-{facts['furniture']}", kind, facts)
 
 
-def list_symbols(plan: FloorPlan) -> list[Symbol]:
-    """Return the symbols of doors, windows and passages, in the middle of their walls.
-
-    A passage in no wall between two rooms is inferred: nothing of it stands there.
-    """
-    left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
-    doubtful = is_doubtful(plan.openings)
-    symbols: list[Symbol] = []
-    for row, ends_m in enumerate(floorplan.centrelines_m(plan.openings)):
-        kind, number = plan.openings["type"][row], plan.openings["opening"][row]
-        host = plan.hosts[row]
-        left = _left_of(ends_m)
-        thick_m = float(left_m[host] + right_m[host]) or plan.assumed_thickness_m
-        shift_m = (left_m[host] - right_m[host]) / 2
-        # a wall's sides are left and right of its own line, which an opening may run against
-        if host >= 0 and left @ _left_of(floorplan.centrelines_m(plan.walls)[host]) < 0:
-            shift_m = -shift_m
-        facts = facts_of("opening", plan.openings, row)
-        said = [f"{kind} {number}, {plan.openings['width_m'][row]:.2f} m"]
-        said += [str(facts[name]) for name in ("doubt", "corrected") if name in facts]
-        is_between = host < 0 <= plan.openings["room_b"][row]
-        symbols.append(
-            Symbol(
-                "parting" if kind == "passage" and is_between else kind,
-                ends_m + shift_m * left,
-                thick_m,
-                f"{kind}-{number}",
-                "; ".join(said),
-                facts,
-                bool(doubtful[row]),
-            )
-        )
-    return symbols
-
-
 def _footprint(plan: FloorPlan, is_wanted: BoolArray) -> BaseGeometry:
     bodies = overlays.unite_areas(plan.known_bodies[is_wanted[plan.thick]])
     return overlays.subtract_areas(bodies, plan.all_gaps)
@@ -229,11 +202,6 @@ def list_polygons(shape: BaseGeometry) -> Iterator[Polygon]:
     for part in shapely.get_parts(shape):
         if isinstance(part, Polygon) and not part.is_empty:
             yield part
-
-
-def _left_of(ends_m: FloatArray) -> FloatArray:
-    x, y = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
-    return np.array([-y, x])
 
 
 def _plain_value(value: object) -> str | int | float | bool | None:

@@ -6,19 +6,8 @@ import numpy as np
 
 from scanplan.exports.sheet.lettering import rotation
 from scanplan.exports.sheet.marks import Symbol
-from scanplan.plan.tolerances import WIDEST_LEAF_M
+from scanplan.plan.floorplan import OPENINGS
 from scanplan.types import FloatArray
-
-
-def _leaf(hinge: float, tip: float) -> list[FloatArray]:
-    """Return a leaf that opens to both sides, and the way of its tip."""
-    length = abs(tip - hinge)
-    # of a quarter of a circle, clockwise from the left hinge
-    bulge = math.copysign(math.tan(math.pi / 8), hinge - tip)
-    return [
-        np.array([[hinge, -length, 0], [hinge, length, 0]]),
-        np.array([[hinge, length, bulge], [tip, 0, bulge], [hinge, -length, 0]]),
-    ]
 
 
 def _swing(hinge: float, tip: float) -> list[FloatArray]:
@@ -34,8 +23,7 @@ def _swing(hinge: float, tip: float) -> list[FloatArray]:
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
 _MIDDLE = [np.array([[0, 0, 0], [1, 0, 0]])]
 BLOCKS = {
-    "DOOR-1": _leaf(0.0, 1.0),
-    "DOOR-2": [*_leaf(0.0, 0.5), *_leaf(1.0, 0.5)],
+    "DOOR": _MIDDLE,
     "WINDOW": [
         np.array([[0, -0.5, 0], [1, -0.5, 0], [1, 0.5, 0], [0, 0.5, 0], [0, -0.5, 0]]),
         np.array([[0, 0, 0], [1, 0, 0]]),
@@ -48,7 +36,6 @@ BLOCKS = {
     "SLIDING": [
         np.array([[a, y, 0], [b, y, 0]]) for a, b, y in ((0, 0.55, 0.15), (0.45, 1, -0.15))
     ],
-    "DOORWAY": _MIDDLE,
     "PARTING": _MIDDLE,
     "GLASS": [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.3, 0.3)],
     "GAP": [*_SIDES, np.array([[0, -0.5, 0], [1, 0.5, 0]])],
@@ -56,16 +43,20 @@ BLOCKS = {
 """Paths of each symbol, from 0 to 1 along its wall; windows and passages are 1 thick, too."""
 
 
+def list_blocks() -> dict[str, list[list[list[float]]]]:
+    """Return corners (n, 2) of the straight symbols' paths, by what corrections call openings."""
+    names = {kind: kind.upper() for kind in OPENINGS} | {"sliding door": "SLIDING"}
+    return {kind: [path[:, :2].tolist() for path in BLOCKS[name]] for kind, name in names.items()}
+
+
 def choose_block(symbol: Symbol) -> str:
     """Return the block of `BLOCKS` that a symbol is drawn with."""
-    if symbol.kind == "door":
-        return "DOOR-2" if symbol.width_m > WIDEST_LEAF_M else "DOOR-1"
     return symbol.block or symbol.kind.upper()
 
 
 def block_scales(symbol: Symbol) -> tuple[float, float]:
     """Return the scales of its block along its wall and across; equal ones keep arcs round."""
-    is_round = symbol.kind in ("door", "swing") and symbol.block != "SLIDING"
+    is_round = symbol.kind == "swing" and symbol.block != "SLIDING"
     across_m = symbol.width_m if is_round else symbol.thickness_m
     return symbol.width_m, across_m
 
@@ -76,11 +67,11 @@ def symbol_angle_deg(symbol: Symbol) -> float:
     return math.degrees(math.atan2(y, x))
 
 
-def symbol_paths(symbol: Symbol, block: list[FloatArray] | None = None) -> list[FloatArray]:
-    """Return its paths (n, 3) in the frame of its ends, by its own or another block."""
+def symbol_paths(symbol: Symbol) -> list[FloatArray]:
+    """Return its paths (n, 3) in the frame of its ends."""
     turn = rotation(symbol_angle_deg(symbol)).T
     scales = np.array(block_scales(symbol))
     return [
         np.column_stack([symbol.ends_m[0] + (path[:, :2] * scales) @ turn, path[:, 2]])
-        for path in block or BLOCKS[choose_block(symbol)]
+        for path in BLOCKS[choose_block(symbol)]
     ]

@@ -19,7 +19,7 @@ from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, straight
 from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
-from scanplan.exports.sheet.symbols import BLOCKS, symbol_paths
+from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
 from scanplan.plan.survey_scale import state_scale
@@ -228,7 +228,7 @@ def draw_legend(
     yield from _heads(slots, [locale.say("Legend")], [0.0])
     for kind, x, y in rows:
         low, high = y - 0.3 * Paper.ROW, y + 0.3 * Paper.ROW
-        if kind in (*OPENINGS, "parting", "doorway"):
+        if kind in (*OPENINGS, "parting"):
             middle = x + (Paper.GAP + Paper.SAMPLE) / 2
             paths, closed = _sample_symbol(kind, middle, y), False
         elif STYLES[kind].fill != "none" or kind == "verify":
@@ -243,11 +243,10 @@ def draw_legend(
 
 def _sample_symbol(kind: str, x: float, y: float) -> list[FloatArray]:
     """Return the symbol of an opening as high as a row of the legend, on paper."""
-    width = Paper.ROW / 2 if kind == "door" else Paper.SAMPLE - Paper.GAP
+    width = Paper.SAMPLE - Paper.GAP
     ends = np.array([[x - width / 2, y], [x + width / 2, y]])
     sample = Symbol(kind, ends, Paper.ROW / 4, "", "")
-    block = BLOCKS["DOOR-1"] if kind == "door" else None
-    return [straight(flatten(path)) for path in symbol_paths(sample, block)]
+    return [straight(flatten(path)) for path in symbol_paths(sample)]
 
 
 def draw_notes(

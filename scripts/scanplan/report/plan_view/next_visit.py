@@ -5,6 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import shapely
 
+from scanplan.exports.sheet import content
+from scanplan.exports.svg import format_number
 from scanplan.plan import floorplan
 from scanplan.report.chart import MARGIN_M
 from scanplan.report.facts import VisitFacts
@@ -22,10 +24,10 @@ def draw_visit_map(plan: floorplan.FloorPlan, visit: VisitFacts) -> str:
     """
     low_m, high_m = plan.bounds_m
     low_m, high_m = low_m - MARGIN_M, high_m + MARGIN_M
-    box = " ".join(plan_svg.format_number(v) for v in (low_m[0], -high_m[1], *(high_m - low_m)))
+    box = " ".join(format_number(v) for v in (low_m[0], -high_m[1], *(high_m - low_m)))
     return "\n".join([
         f'<svg id="visit-map" viewBox="{box}" role="img" aria-label="Standpoints of a next visit">',
-        *plan_svg.draw_walls(plan),
+        *plan_svg.draw_marks(content.draw_walls(plan)),
         *_questions(visit.questions),
         *_ways(visit.standpoints),
         *_standpoints(visit.standpoints),
@@ -103,7 +105,7 @@ def _ways(standpoints: Columns) -> Iterator[str]:
 def _standpoints(standpoints: Columns) -> Iterator[str]:
     places = (standpoints[name].tolist() for name in ("standpoint", "x_m", "y_m"))
     for number, x_m, y_m in zip(*places, strict=True):
-        x, y = plan_svg.format_number(x_m), plan_svg.format_number(-y_m)
+        x, y = format_number(x_m), format_number(-y_m)
         yield (
             f'<g class="standpoint"><circle cx="{x}" cy="{y}" r="{_NUMBER_M}"/>'
             f'<text x="{x}" y="{y}" dy="0.35em">{number}</text></g>'

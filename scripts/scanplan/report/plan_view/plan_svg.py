@@ -1,22 +1,23 @@
 """The plan in the report: one SVG whose parts a script shows as the plan grows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 
 import numpy as np
 import shapely
 
+from scanplan.exports.sheet import content
+from scanplan.exports.sheet.marks import Mark, straight
+from scanplan.exports.sheet.openings import list_symbols
+from scanplan.exports.sheet.styles import STYLES
+from scanplan.exports.sheet.symbols import symbol_paths
+from scanplan.exports.svg import format_number, format_path
 from scanplan.plan import floorplan
 from scanplan.report.chart import MARGIN_M
 from scanplan.report.plan_view import growth
 from scanplan.report.point_image import PointImage
 from scanplan.types import Columns, FloatArray
 from scanplan.validation import doubts
-
-_TITLES = {
-    "observed": "observed wall",
-    "inferred": "inferred wall: closed between two observed pieces",
-}
 
 
 def growing_plan_svg(
@@ -57,7 +58,7 @@ def growing_plan_svg(
         f'<title id="plan-title">Floor plan of {escape(plan.name)}</title>',
         '<g id="floors">', *draw_rooms(plan), "</g>",
         '<g id="points">', draw_image(points), "</g>",
-        '<g id="finished">', *draw_walls(plan), *draw_openings(plan), "</g>",
+        '<g id="finished">', *draw_finished(plan), "</g>",
         '<g id="picks">', *_picks(plan), "</g>",
         '<g id="edits"></g>',
         '<g id="way">', draw_path(way_m[None], 'class="way"'), "</g>",
@@ -81,14 +82,25 @@ def _view_box(plan: floorplan.FloorPlan, positions_m: FloatArray) -> str:
     return " ".join(format_number(value) for value in (low_m[0], -high_m[1], *(high_m - low_m)))
 
 
-def draw_walls(plan: floorplan.FloorPlan) -> Iterator[str]:
-    """Yield the elements of a plan's walls and single surfaces."""
-    for state in floorplan.STATES:
-        title = f"<title>{_TITLES[state]}</title>"
-        for part in shapely.get_parts(plan.solid(state)):
-            yield f'<path class="wall {state}" d="{_outline_path(part)}">{title}</path>'
-        for line in plan.single(state):
-            yield draw_path(shapely.get_coordinates(line)[None], f'class="single {state}"')
+def draw_marks(marks: Iterable[Mark]) -> Iterator[str]:
+    """Yield the elements of marks as on sheets, classes by their kinds, in the order of drawing."""
+    order = list(STYLES)
+    for mark in sorted(marks, key=lambda mark: order.index(mark.kind)):
+        yield _path(mark.bent_paths, f'class="{mark.kind}"', mark.title, closed=mark.closed)
+
+
+def draw_finished(plan: floorplan.FloorPlan) -> Iterator[str]:
+    """Yield the elements of walls, furniture and openings: what sheets draw of them.
+
+    Openings say which they are, and in which wall, so that the page hides what is drawn anew.
+    """
+    yield from draw_marks([*content.draw_walls(plan), *content.draw_furniture(plan)])
+    numbers = (plan.openings[name].tolist() for name in ("opening", "wall"))
+    for symbol, number, wall in zip(list_symbols(plan), *numbers, strict=True):
+        of = (
+            f'class="opening {symbol.kind}" data-opening="opening {number}" data-host="wall {wall}"'
+        )
+        yield _path(symbol_paths(symbol), of, symbol.title)
 
 
 def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
@@ -101,7 +113,10 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
         "opening": floorplan.centrelines_m(plan.openings),
     }
     known = {
-        "wall": [f' data-thickness="{m:.3f}"' for m in np.nan_to_num(plan.walls["thickness_m"])],
+        "wall": [
+            f' data-thickness="{m:.3f}" data-body="{_outline(body)}"'
+            for m, body in zip(np.nan_to_num(plan.walls["thickness_m"]), plan.bodies, strict=True)
+        ],
         "face": [""] * len(rows),
         "opening": [
             f' data-kind="{escape(kind)}" data-wall="{wall}" data-rooms="{room} {other}"'
@@ -116,23 +131,13 @@ def _picks(plan: floorplan.FloorPlan) -> Iterator[str]:
             yield draw_path(line_m[None], f'class="pick" data-element="{kind} {number}"{more}')
 
 
-def draw_openings(plan: floorplan.FloorPlan) -> Iterator[str]:
-    """Yield the elements of a plan's openings."""
-    kinds, widths_m = plan.openings["type"], plan.openings["width_m"]
-    lines_m = floorplan.centrelines_m(plan.openings)
-    for kind, line_m, width_m in zip(kinds, lines_m, widths_m, strict=True):
-        title = f"<title>{escape(kind)}, {width_m:.2f} m</title>"
-        yield draw_path(line_m[None], f'class="opening {kind}"', title)
-
-
 def draw_rooms(plan: floorplan.FloorPlan) -> Iterator[str]:
-    """Yield the elements of a plan's rooms."""
-    rooms = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
-    for room, x_m, y_m, area in zip(*rooms, plan.areas, strict=True):
-        outline = " ".join(map(_outline_path, shapely.get_parts(area)))
+    """Yield the elements of a plan's rooms, of which the page's script reads the corners."""
+    places = (plan.rooms[c].tolist() for c in ("room", "x_m", "y_m"))
+    for mark, room, x_m, y_m in zip(content.draw_rooms(plan), *places, strict=True):
         place = f'data-x="{format_number(x_m)}" data-y="{format_number(-y_m)}"'
-        attributes = f'data-element="room {room}" {place}'
-        yield f'<path class="room" {attributes} d="{outline}"/>'
+        of = f'class="room" data-element="room {room}" {place}'
+        yield _path(mark.paths, of, closed=True)
 
 
 def draw_image(points: PointImage) -> str:
@@ -195,22 +200,18 @@ def _scans(positions_m: FloatArray) -> Iterator[str]:
         )
 
 
-def draw_path(lines_m: FloatArray, attributes: str, inside: str = "") -> str:
+def draw_path(lines_m: FloatArray, attributes: str) -> str:
     """Return a path along lines (n, p, 2), metres."""
-    drawn = "".join("M" + "L".join(map(_point, line_m)) for line_m in lines_m)
-    end = f">{inside}</path>" if inside else "/>"
+    return _path([straight(line_m) for line_m in lines_m], attributes)
+
+
+def _outline(body: shapely.Polygon) -> str:
+    return format_path(straight(shapely.get_coordinates(body.exterior)), closed=True)
+
+
+def _path(
+    paths: Iterable[FloatArray], attributes: str, title: str = "", *, closed: bool = False
+) -> str:
+    drawn = "".join(format_path(path, closed=closed) for path in paths)
+    end = f"><title>{escape(title)}</title></path>" if title else "/>"
     return f'<path {attributes} d="{drawn}"{end}'
-
-
-def _outline_path(polygon: shapely.Polygon) -> str:
-    rings = (shapely.get_coordinates(ring)[:-1] for ring in shapely.get_rings(polygon))
-    return "".join("M" + "L".join(map(_point, ring)) + "Z" for ring in rings)
-
-
-def _point(place_m: FloatArray) -> str:
-    return f"{format_number(place_m[0])} {format_number(-place_m[1])}"
-
-
-def format_number(value: float) -> str:
-    """Return metres to the millimetre, as short as they can be written."""
-    return f"{round(float(value), 3) + 0.0:g}"

@@ -5,45 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from scanplan.exports.sheet import content
 from scanplan.exports.sheet.marks import Symbol
 from scanplan.geometry.polygons import long_axis_m
-from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import HINGE_M, WIDEST_LEAF_M
 from scanplan.store import schemas
 from scanplan.types import BoolArray, Columns, FloatArray
 
 _LEAST_SHARE = 0.5  # of a leaf's length that is seen beside a door: less is something else
 _LEAST_SINE = 0.25  # a leaf turned less than 15 degrees is shut, and does not say to which side
-
-
-@dataclass(frozen=True, eq=False)
-class Swing:
-    """How a door opens.
-
-    Attributes
-    ----------
-    block : str
-        Of `symbols.BLOCKS`: hinged at the start or the end of its line, with two leaves, or such as
-        slide.
-    is_reversed : bool
-        Whether its line is to run the other way, so that it opens to the left of it.
-    """
-
-    block: str
-    is_reversed: bool
-
-
-def find_swings(plan: FloorPlan) -> dict[int, Swing]:
-    """Return how doors open, by their rows, where a leaf stands open, or a person said so."""
-    leaves = find_leaves(plan.furniture)
-    found: dict[int, Swing] = {}
-    for row, symbol in enumerate(content.list_symbols(plan)):
-        drawn = draw_swing(symbol, leaves) if symbol.kind == "door" else symbol
-        if drawn.kind == "swing":
-            before_m, after_m = (ends[1] - ends[0] for ends in (symbol.ends_m, drawn.ends_m))
-            found[row] = Swing(drawn.block, bool(before_m @ after_m < 0))
-    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +40,7 @@ def find_leaves(furniture: Columns) -> Leaves:
 
 
 def draw_swing(door: Symbol, leaves: Leaves) -> Symbol:
-    """Return a door with its swing as its leaf was seen, or as a plain doorway.
+    """Return a door with its swing as its leaf was seen, and as it is where none was.
 
     Parameters
     ----------
@@ -92,7 +61,7 @@ def draw_swing(door: Symbol, leaves: Leaves) -> Symbol:
         if hinge >= 0
     ]
     if not found:
-        return replace(door, kind="doorway")
+        return door
     hinge, side = found[0]
     # hinged in the side of the wall that it opens to
     ends_m = door.ends_m + side * door.thickness_m / 2 * left
