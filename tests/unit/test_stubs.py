@@ -94,6 +94,33 @@ def test_what_is_cut_is_counted_among_scraps():
     assert draft_plan(crossing(5.0, 8.3), SETTINGS)[1].n_left_out == 2  # an end and its opening
 
 
+def hung(*lines_m):
+    """The plan of `crossing` with more walls, which were seen from one side."""
+    drawn = crossing(5.0, 8.3)
+    walls = [(line_m, np.nan, 11, -1, "observed") for line_m in lines_m]
+    added = floorplan_making.walls(walls)
+    added["wall"] = np.arange(7, 7 + len(walls), dtype=np.int32)
+    joined = {name: np.append(of, added[name]) for name, of in drawn.walls.items()}
+    return replace(drawn, walls=joined)
+
+
+@pytest.mark.parametrize(
+    ("lines_m", "n_cut"),
+    [
+        ([(8.0, 1.5, 8.0, 2.2)], 0),
+        # one that hangs on another, and comes back to no wall of the building
+        ([(8.0, 1.5, 8.0, 2.2), (8.0, 2.2, 9.0, 2.2)], 0),
+        # on nothing before, and as loose as it was
+        ([(9.0, 1.8, 9.0, 2.2)], 1),
+        # round the corner to the north wall, which holds them
+        ([(8.0, 1.5, 8.0, 4.0), (8.0, 4.0, 6.0, 4.0), (6.0, 4.0, 6.0, 3.1)], 1),
+    ],
+)
+def test_an_end_that_other_walls_hang_on_is_not_cut(lines_m, n_cut):
+    plan, found = cut_stubs(hung(*lines_m))
+    assert found == n_cut and (plan.walls["wall"] > 6).sum() == len(lines_m)
+
+
 @pytest.mark.parametrize(
     ("from_m", "to_m"),
     [

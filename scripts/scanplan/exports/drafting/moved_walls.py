@@ -101,6 +101,13 @@ def find_met(walls: WallLines) -> BoolArray:
     return (apart_m <= reach_m).any(axis=1).reshape(-1, 2)
 
 
+def find_joined(walls: WallLines) -> BoolArray:
+    """Return which walls (n, n) meet: an end of one is at the other."""
+    apart_m, reach_m = _measure_gaps(walls, END_M)
+    is_at = (apart_m <= reach_m).reshape(-1, 2, len(walls.lines_m)).any(axis=1)
+    return np.asarray(is_at | is_at.T, bool)
+
+
 def _measure_gaps(walls: WallLines, near_m: float) -> tuple[FloatArray, FloatArray]:
     """Return how far ends are from other walls' lines, and may be to meet these, both (2n, n).
 

@@ -5,10 +5,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from scipy.sparse.csgraph import connected_components
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.facades import find_behind, find_facades
 from scanplan.exports.drafting.moved_rooms import ON_M
+from scanplan.exports.drafting.moved_walls import find_joined
+from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.geometry.tolerances import SHORTEST_M
@@ -47,7 +50,8 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     """Return a plan whose walls end at the facades that they cross, and how many ends are cut.
 
     What bounds a room beyond stays, and what a person drew, openings among it. Openings that are
-    not whole in what is left go with what is cut.
+    not whole in what is left go with what is cut. An end by which other walls hang together with
+    the building is not cut: a surveyor draws no wall that hangs on nothing.
     """
     lines_m = centrelines_m(plan.walls)
     building = _Building(
@@ -71,6 +75,11 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
     # two facades may leave next to nothing between them
     is_short = line_lengths_m(cut_m) < _MOST * line_lengths_m(lines_m)
     cut_m[is_short] = lines_m[is_short]
+    if (cut_m == lines_m).all():
+        return plan, 0
+    # what carries another wall is built, wherever it ends
+    is_carrying = _find_carrying(plan, cut_m)
+    cut_m[is_carrying] = lines_m[is_carrying]
     is_cut = (cut_m != lines_m).any(axis=2)
     if not is_cut.any():
         return plan, 0
@@ -82,6 +91,15 @@ def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
         openings={name: values[kept] for name, values in plan.openings.items()},
     )
     return cut, int(is_cut.sum())
+
+
+def _find_carrying(plan: FloorPlan, cut_m: FloatArray) -> BoolArray:
+    """Return which walls (n,), if they were cut, would part others from the building."""
+    walls = gather_lines(plan, 0.0)
+    joined, left = find_joined(walls), find_joined(replace(walls, lines_m=cut_m))
+    _, group = connected_components(left, directed=False)
+    is_parted = (joined & ~left & (group[:, None] != group)).any(axis=1)
+    return np.asarray(is_parted & (cut_m != walls.lines_m).any(axis=(1, 2)), bool)
 
 
 def _find_crossings(building: _Building, wall: int, end: int) -> Iterator[FloatArray]:
