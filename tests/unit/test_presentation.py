@@ -111,6 +111,9 @@ def test_a_pane_in_no_wall_is_drawn_as_far_as_it_bounds_a_room():
     assert pane.ends_m[0] == pytest.approx([4.1, -0.2])
     # and what a thick wall at the corner would take
     assert 7.1 <= pane.ends_m[1, 0] <= 7.4 and pane.ends_m[1, 1] == pytest.approx(-0.2)
+    # what is known of it is of what is drawn
+    assert pane.facts["width_m"] == pytest.approx(pane.width_m)
+    assert pane.facts["width_changed_m"] == pytest.approx(pane.width_m - 5)
 
 
 def test_a_hole_in_a_wall_of_no_room_is_drawn_and_one_in_a_room_is_not():

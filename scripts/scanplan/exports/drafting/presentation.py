@@ -30,7 +30,6 @@ from scanplan.store import schemas
 from scanplan.types import Array, BoolArray, FloatArray
 
 _AREA_RULE = "Areas are net (NRF, DIN 277): between walls, less columns and reveals."
-_PANES = ("glass", "window")
 _PLAIN = {"gap": "passage"}
 """Openings drawn as others: what lies in them is said on the sheet of what was measured."""
 
@@ -140,57 +139,13 @@ def _find_backs(plan: FloorPlan) -> Array:
 
 
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings of walls and between rooms.
-
-    Left out are what stands in no wall and bounds no room along half of its width (floor may end
-    as far before a pane as before a thick wall), what is there twice (`_find_doubles`), and what
-    has neither leaf nor pane and leads from a room into itself. Panes in no wall are drawn as far
-    as they bound a room.
-    """
-    lines_m = floorplan.centrelines_m(plan.openings)
-    near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, CORNER_M)
-    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
-    is_none = (plan.hosts < 0) & (shapely.length(along) <= plan.openings["width_m"] / 2)
-    is_none |= _find_doubles(plan, ~is_none)
+    """Yield openings, but what has neither leaf nor pane and leads from a room into itself."""
     # a hole in a wall of no room is one all the same
     is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
-    is_none |= (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
+    is_none = (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
     for row, symbol in enumerate(list_symbols(plan)):
-        if is_none[row]:
-            continue
-        if plan.hosts[row] < 0 and symbol.kind in _PANES:
-            yield replace(symbol, ends_m=_limit_line(symbol.ends_m, along[row]))
-        else:
+        if not is_none[row]:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
-
-
-def _limit_line(line_m: FloatArray, along: BaseGeometry) -> FloatArray:
-    """Return a line (2, 2) from the first to the last of its places that lie on some geometry."""
-    way_m = line_m[1] - line_m[0]
-    shares = (shapely.get_coordinates(along) - line_m[0]) @ way_m / (way_m @ way_m)
-    return line_m[0] + np.array([[shares.min()], [shares.max()]]) * way_m
-
-
-def _find_doubles(plan: FloorPlan, is_drawn: BoolArray) -> BoolArray:
-    """Return which openings (m,) are others once more.
-
-    What is in no wall and lies behind the face of one, or a pane beside one as wide that is drawn.
-    """
-    lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings))
-    widths_m = np.asarray(plan.openings["width_m"], float)
-    grounds = overlays.buffer_shapes(lines, CORNER_M, cap_style="flat")
-    is_pane = np.isin(plan.openings["type"], _PANES)
-    bodies = overlays.unite_areas(plan.bodies)
-    panes = bodies
-    is_double = np.zeros(len(lines), bool)
-    for row in np.argsort(-widths_m, kind="stable").tolist():
-        if plan.hosts[row] >= 0 or not is_drawn[row]:
-            continue
-        beside_m = overlays.intersect_lines(lines[row], panes if is_pane[row] else bodies).length
-        is_double[row] = beside_m > widths_m[row] / 2
-        if is_pane[row] and not is_double[row]:
-            panes = overlays.unite_areas([panes, grounds[row]])
-    return is_double
 
 
 def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
@@ -236,7 +191,7 @@ def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
         f" {locale.deviation(drafted.thickness_m)}.",
         f"Openings widened by at most {locale.deviation(drafted.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (drafted.n_assumed > 0),
-        f"{left_out} left out: short walls at no room, slits, ends beyond facades."
+        f"{left_out} left out: short walls and panes at no room, slits, ends beyond facades."
         * (drafted.n_left_out > 0),
         _AREA_RULE,
     ]

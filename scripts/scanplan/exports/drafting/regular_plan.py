@@ -10,6 +10,7 @@ import shapely
 from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
 from scanplan.exports.drafting.adjustment import adjust_walls
 from scanplan.exports.drafting.facades import find_facades, limit_backs
+from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
@@ -69,8 +70,8 @@ class Drafted:
     moved_m, turned_deg, thickness_m, width_m : float
         The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
     n_assumed, n_left_out : int
-        Walls whose thickness is assumed; short pieces of wall, slits, and ends of walls beyond
-        facades that are not drawn.
+        Walls whose thickness is assumed; short pieces of wall, slits, ends of walls beyond facades
+        and panes at no room that are not drawn.
     """
 
     n_walls: int
@@ -131,6 +132,15 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "thickness_changed_m": grown_m,
         "thickness_from": np.where(walls.is_thick, MEASURED, ASSUMED).astype(object),
     }
+    regular = settle_loose(
+        replace(
+            plan,
+            walls=_leave_doubts({**plan.walls, **changed}),
+            faces=_leave_doubts(_move_faces(plan, moved)),
+            openings=_leave_doubts(openings),
+            rooms=_leave_doubts(_move_rooms(plan, moved)),
+        )
+    )
     kinds = [
         {wall for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
         for kind in (DIRECTION, THROUGH, THICKNESS)
@@ -143,14 +153,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         thickness_m=float(np.abs(grown_m).max(initial=0)),
         width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
         n_assumed=int((~walls.is_thick).sum()),
-        n_left_out=_count_elements(surveyed) - _count_elements(plan) + n_cut,
-    )
-    regular = replace(
-        plan,
-        walls=_leave_doubts({**plan.walls, **changed}),
-        faces=_leave_doubts(_move_faces(plan, moved)),
-        openings=_leave_doubts(openings),
-        rooms=_leave_doubts(_move_rooms(plan, moved)),
+        n_left_out=_count_elements(surveyed) - _count_elements(regular) + n_cut,
     )
     return regular, drafted
 
