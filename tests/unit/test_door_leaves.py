@@ -37,6 +37,8 @@ def test_a_door_swings_as_its_leaf_stood(seen, tip):
     # to the other jamb, a quarter around the hinge
     np.testing.assert_allclose(way[[0, -1]], [tip, [3 - tip[0], opened[0][1]]], atol=1e-9)
     np.testing.assert_allclose(np.hypot(*(way - opened[0]).T), 1, atol=1e-9)
+    # its wall stays where it is
+    np.testing.assert_allclose(np.sort(swing.axis_m, axis=0), DOOR.ends_m, atol=1e-9)
 
 
 def test_a_wide_door_has_two_leaves():

@@ -273,7 +273,7 @@ def _find_stated(symbols: list[Symbol], drawn: list[Dimension]) -> list[bool]:
     stated: list[bool] = []
     for symbol in symbols:
         is_as_wide = np.abs(widths_m - symbol.width_m) < END_M
-        apart_m = np.hypot(*(middles_m - symbol.ends_m.mean(axis=0)).T)
+        apart_m = np.hypot(*(middles_m - symbol.axis_m.mean(axis=0)).T)
         stated.append(bool((is_as_wide & (apart_m < symbol.thickness_m + END_M)).any()))
     return stated
 
@@ -327,7 +327,7 @@ def surround_symbol(page: Page, symbol: Symbol) -> FloatArray:
     """Return a line (n, 2) around a doubtful or corrected opening, map frame."""
     half_m = symbol.thickness_m / 2 + _apart_m(page)
     return shapely.get_coordinates(
-        overlays.buffer_shapes(shapely.LineString(symbol.ends_m), half_m, quad_segs=8)
+        overlays.buffer_shapes(shapely.LineString(symbol.axis_m), half_m, quad_segs=8)
     )
 
 

@@ -96,7 +96,8 @@ class Symbol:
     ----------
     kind : str
     ends_m : (2, 2) float
-        Along the middle of its wall, map frame.
+        Along the middle of its wall, map frame; of a leaf that swings along the side that it is
+        hinged in, which it opens to on the left.
     thickness_m : float
         Of its wall, as drawn.
     element, title : str
@@ -119,6 +120,14 @@ class Symbol:
     def width_m(self) -> float:
         """Its clear width."""
         return float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
+
+    @property
+    def axis_m(self) -> FloatArray:
+        """Its line (2, 2) in the middle of its wall."""
+        if self.kind != "swing" or self.block == "SLIDING":
+            return self.ends_m
+        x, y = (self.ends_m[1] - self.ends_m[0]) / self.width_m
+        return self.ends_m - self.thickness_m / 2 * np.array([-y, x])
 
     @property
     def surrounded_by(self) -> list[str]:

@@ -64,7 +64,7 @@ def show_measured(plan: FloorPlan) -> Shown:
     marks = [*content.draw_rooms(plan), *content.draw_walls(plan), *content.draw_axes(plan)]
     marks += [*content.draw_doubts(plan), *content.draw_furniture(plan)]
     symbols = list_symbols(plan)
-    spans_m = np.array([symbol.ends_m for symbol in symbols]).reshape(-1, 2, 2)
+    spans_m = np.array([symbol.axis_m for symbol in symbols]).reshape(-1, 2, 2)
     half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
     built = overlays.unite_areas([*plan.bodies, *floorplan.buffer_lines(spans_m, half_m)])
     known = overlays.unite_areas(plan.known_bodies)
