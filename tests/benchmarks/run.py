@@ -14,6 +14,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py design FOLDER
        run.py sheets RESULTS FOLDER [SURVEY ...]
        run.py presentation RESULTS TRUTHS [DRIVE ...]
+       run.py redraw RESULTS [SURVEY ...]
        run.py files RESULTS SURVEY ... [node=FOLDER]
        run.py ids RESULTS FOLDER SURVEY ...
        run.py odometry FOLDER [DRIVE ...]
@@ -86,6 +87,9 @@ made with this code, and kept in FOLDER.
 `presentation` holds regular drawings of simulated drives that are planned in RESULTS against their
 truths, beside what was measured: rooms, walls, directions, and the share of walls whose thickness
 is the true one.
+
+`redraw` counts what an architect would redraw of the sheets of surveys in RESULTS, measured and
+regular, by one list: doubled walls, ends that nearly meet, words on walls and others.
 
 `files` asks validators and readers that are not ours about the files of surveys in RESULTS: schema,
 rules and demands of models, drawings by ezdxf and LibreCAD, PDF by qpdf, layers by GDAL; with
@@ -300,6 +304,13 @@ def bench_presentation(results: str, truths: str, *names: str) -> None:
     presentation_bench.bench(Path(results), Path(truths), names, SETTINGS)
 
 
+def bench_redraw(results: str, *names: str) -> None:
+    """What would be redrawn of sheets."""
+    import redraw_bench
+
+    redraw_bench.bench(Path(results), names, SETTINGS)
+
+
 def bench_odometry(folder: str, *names: str) -> None:
     """Poses of drives without a localiser against the truth."""
     import odometry_bench
@@ -354,6 +365,7 @@ APART: dict[str, Callable[..., None]] = {
     "models": bench_models,
     "files": bench_files,
     "presentation": bench_presentation,
+    "redraw": bench_redraw,
     "realistic": bench_realistic,
     "compare_realistic": compare_realistic,
     "ablate": ablate_rules,
