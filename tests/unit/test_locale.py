@@ -88,6 +88,11 @@ def test_feet_and_inches_are_rounded_to_a_quarter_of_an_inch(length_m, said):
     assert Locale("ft").length(length_m) == said
 
 
+def test_a_language_has_an_order_of_its_own():
+    words = {"{n} of {} in {}": "{3} in {2}: {1}", "wall": "Wand", "line": "Flucht"}
+    assert Locale(decimal=",", phrases=words).say("1.5 of wall in line") == "Flucht in Wand: 1,5"
+
+
 def test_phrases_hold_numbers_and_other_phrases():
     words = {"{n} doors": "{n} Türen", "about {}": "etwa {}", "a plan: {}": "ein Plan: {}"}
     german = Locale(decimal=",", date="%d.%m.%Y", phrases=words)
@@ -140,7 +145,7 @@ def test_layers_have_the_names_that_are_asked_for_and_nothing_is_lost():
 
 def test_a_file_of_ones_own_is_read(tmp_path):
     file = tmp_path / "it.yaml"
-    file.write_text('decimal: ","\ndate: "%d/%m/%Y"\nphrases: {"{n} doors": "{n} porte"}\n')
+    file.write_text('decimal: ","\ndate: "%d/%m/%Y"\nphrases: {"{n} doors": "{1} porte"}\n')
     assert Locale("m", **read_words(str(file))).say("2 doors") == "2 porte"
     assert read_words("en") == {} and read_layers(None) == {}
     layers = tmp_path / "mine.yaml"
@@ -156,6 +161,8 @@ def test_a_file_of_ones_own_is_read(tmp_path):
         ('decimal: ","\ndate: 3\nphrases: {}', "date"),
         ('decimal: ","\ndate: "%d"\nphrases: []', "phrases"),
         ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors": "porte"}', "{n} doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors of {}": "{1} {1}"}', "{n} doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors of {}": "{2} {}"}', "{n} doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": "{porte"}', "doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": ""}', "doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"{n}": "{n}"}', "{n}"),

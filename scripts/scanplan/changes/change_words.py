@@ -1,6 +1,7 @@
 """A change in words, as sheets and pages state it."""
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 from scanplan.changes.verdicts import CHANGES, STATES, Change
@@ -26,8 +27,12 @@ class ChangeWords(NamedTuple):
     p: str
 
 
-def say_change(change: Change, per_m: float = 100.0) -> ChangeWords:
+def say_change(
+    change: Change, per_m: float = 100.0, say: Callable[[str], str] = str
+) -> ChangeWords:
     """Return a change in words, how far in units of so many a metre.
+
+    `say` puts words and numbers into another language.
 
     >>> import shapely
     >>> line = shapely.LineString([(0, 0), (1, 0)])
@@ -40,7 +45,7 @@ def say_change(change: Change, per_m: float = 100.0) -> ChangeWords:
     is_doubtful = change.verdict in (*CHANGES, *STATES) and not change.is_told
     by = ""
     if math.isfinite(change.shift_m):
-        sigma = f" ± {per_m * change.sigma_m:.1f}" if math.isfinite(change.sigma_m) else ""
-        by = f"{per_m * abs(change.shift_m):.1f}{sigma}"
-    verdict = f"{change.verdict}{'?' if is_doubtful else ''}"
-    return ChangeWords(f"{kind} {number}", verdict, by, f"{change.p:.2f}")
+        lengths_m = (abs(change.shift_m), change.sigma_m)
+        by = " ± ".join(say(f"{per_m * m:.1f}") for m in lengths_m if math.isfinite(m))
+    verdict = f"{say(change.verdict)}{'?' if is_doubtful else ''}"
+    return ChangeWords(f"{say(kind)} {number}", verdict, by, say(f"{change.p:.2f}"))

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from scanplan.types import FilePath
 
 _PLACE = re.compile(r"\{n?\}")
+_NUMBERED = re.compile(r"\{(\d)\}")
 _FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`\x00-\x1f\x7f]')
 """What names of layers must not have in DXF."""
 _LONGEST = 255
@@ -73,8 +74,11 @@ def read_words(language: str) -> dict[str, Any]:
         if not any(map(str.isalpha, re.sub(_PLACE, "", phrase))):
             raise StageError(f"{place} has no letters; leave it out")
         asked, given = len(_PLACE.findall(phrase)), len(_PLACE.findall(words))
-        if asked != given or set(re.sub(_PLACE, "", words)) & set("{}"):
-            raise StageError(f"{place} has {asked} places, its words have {given}; keep each {{}}")
+        numbers = sorted(map(int, _NUMBERED.findall(words)))
+        is_filled = (given, numbers) in ((asked, []), (0, [*range(1, asked + 1)]))
+        if not is_filled or set(_NUMBERED.sub("", _PLACE.sub("", words))) & set("{}"):
+            fault = f"{place} has {asked} places, its words have {given + len(numbers)}"
+            raise StageError(f"{fault}; keep each {{}}, or write {{1}} for the first and so on")
     return values
 
 

@@ -45,7 +45,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         if not _is_of(symbol, changed)
     ]
     told = [
-        Told(say_change(of.change, facts.locale.fine[0]), of.change.shape)
+        Told(say_change(of.change, facts.locale.fine[0], facts.locale.say), of.change.shape)
         for of in drawn
         if of.change.table in _TAGGED and of.change.is_told
     ]

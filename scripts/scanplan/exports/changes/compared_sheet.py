@@ -159,7 +159,7 @@ def _draw_table(
         for row in range(slot.rows)
     ]
     heads = [*map(locale.say, ("No.", "Element", "Verdict", f"By, {locale.fine[1]}", "p"))]
-    numbered = [(str(number), *_say_row(row, locale)) for number, row in enumerate(rows, 1)]
+    numbered = [(str(number), *row) for number, row in enumerate(rows, 1)]
     widths_mm = _find_widths_mm([heads, *numbered])
 
     def write(kind: str, x: float, y: float, texts: Sequence[str]) -> Iterator[Word]:
@@ -175,16 +175,6 @@ def _draw_table(
         yield from write("title", *places[0], ("", locale.say("none"), "", "", ""))
     for row, place in zip(numbered, places, strict=False):
         yield from write("title", *place, row)
-
-
-def _say_row(row: ChangeWords, locale: Locale) -> Iterator[str]:
-    """Yield the cells of a row: kind and number of the element, verdict, how far, how likely."""
-    kind, _, number = row.element.partition(" ")
-    yield f"{locale.say(kind)} {number}"
-    verdict = row.verdict.removesuffix("?")
-    yield locale.say(verdict) + row.verdict[len(verdict) :]
-    yield " ± ".join(map(locale.say, row.by.split(" ± ")))
-    yield locale.say(row.p)
 
 
 def _find_widths_mm(rows: Sequence[Sequence[str]]) -> FloatArray:

@@ -1,7 +1,7 @@
 """The sheet of what was built against its design, by classes of tolerance."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import shapely
@@ -65,7 +65,10 @@ def compose_design_sheet(
     """
     drawn = [of for of in told if of.change.table != "room"]
     faults = [of for of in drawn if of.is_fault]
-    words = [Told(say_deviation(of, facts.locale.fine[0]), of.change.shape) for of in faults]
+    words = [
+        Told(say_deviation(of, facts.locale.fine[0], facts.locale.say), of.change.shape)
+        for of in faults
+    ]
     ways = [
         Way(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
         for of in faults
@@ -81,16 +84,18 @@ def compose_design_sheet(
     )
 
 
-def say_deviation(of: Deviation, per_m: float = 100.0) -> ChangeWords:
-    """Return what is told of an element in words, how far in units of so many a metre."""
+def say_deviation(
+    of: Deviation, per_m: float = 100.0, say: Callable[[str], str] = str
+) -> ChangeWords:
+    """Return what is told of an element in words, as `change_words.say_change` does."""
     number = f"a{of.change.number_a}" if of.change.number_a >= 0 else f"b{of.change.number_b}"
     by = ""
     if math.isfinite(of.change.shift_m):
-        by = f"{per_m * of.change.shift_m:+.1f} ± {per_m * of.change.sigma_m:.1f}"
-    p = f"{of.p:.2f}" if math.isfinite(of.p) else ""
-    return ChangeWords(
-        f"{of.change.kind_a or of.change.table} {number}", of.verdict.replace("_", " "), by, p
-    )
+        off, sigma = per_m * of.change.shift_m, per_m * of.change.sigma_m
+        by = " ± ".join(map(say, (f"{off:+.1f}", f"{sigma:.1f}")))
+    p = say(f"{of.p:.2f}") if math.isfinite(of.p) else ""
+    kind = say(of.change.kind_a or of.change.table)
+    return ChangeWords(f"{kind} {number}", say(of.verdict.replace("_", " ")), by, p)
 
 
 def _draw(found: AsBuilt, drawn: Sequence[Deviation]) -> Iterator[Mark]:
@@ -158,7 +163,7 @@ def _sum_walls(told: Sequence[Deviation], locale: Locale) -> str:
         for verdict in _STYLES
     }
     return "; ".join(
-        f"{verdict.replace('_', ' ')} {locale.measure(length_m, 1)}"
+        f"{locale.say(verdict.replace('_', ' '))} {locale.measure(length_m, 1)}"
         for verdict, length_m in lengths_m.items()
         if length_m
     )

@@ -34,7 +34,7 @@ def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
     """Compose the sheet of a plan of several surveys, in the frame of the first."""
     symbols = [replace(symbol, verify=False, facts={}) for symbol in list_symbols(grown.plan)]
     told = [
-        Told(say_change(change, facts.locale.fine[0]), change.shape)
+        Told(say_change(change, facts.locale.fine[0], facts.locale.say), change.shape)
         for step in grown.steps
         for change in step.changes
         if change.table in _TOLD and change.is_told

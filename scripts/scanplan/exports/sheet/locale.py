@@ -32,7 +32,8 @@ class Locale:
         Of days, as strftime has it.
     phrases : dict of str to str
         English phrases and what they are in another language. `{n}` stands for a number, `{}` for
-        any words, which are translated in turn.
+        any words, which are translated in turn; in the other language also `{1}` for the first of
+        them, `{2}` for the second and so on.
     """
 
     unit: str = "m"
@@ -140,6 +141,8 @@ class Locale:
             for place, group in _PLACES.items():
                 pattern = re.sub(place.replace("\\", "\\\\"), lambda _, g=group: g, pattern)
             words = re.sub(r"\{n\}", "{}", self.phrases[phrase])
+            # numbered from 1: a language has an order of its own
+            words = re.sub(r"\{(\d)\}", lambda place: f"{{{int(place[1]) - 1}}}", words)
             found.append((re.compile(pattern), words))
         return found
 
