@@ -31,16 +31,20 @@ def test_a_catalogue_gives_sizes_by_name(tmp_path):
         "windows": {},
         "facade_m": 0.42,
         "classification": {},
-        "codes": {},
+        "codes": {"walls": {}, "doors": {}, "windows": {}},
     }
 
 
 def test_lists_have_a_code_and_entries_may_have_their_own(tmp_path):
     system = "classification: {system: Ours, walls: W, doors: D, windows: G}\n"
     own = GOOD.replace("size_m: 1}", "size_m: 1, code: D.2}") + system
+    # a window of the same name has its own, or none
+    own = own.replace("windows: []", "windows: [{name: leaf, size_m: 1}]")
     read = read_catalogue(written(tmp_path, own))
     assert read["classification"] == {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"}
-    assert read["codes"] == {"leaf": "D.2"} and read["doors"] == {"leaf": 1.0}
+    assert read["codes"] == {"walls": {}, "doors": {"leaf": "D.2"}, "windows": {}} and read[
+        "doors"
+    ] == {"leaf": 1.0}
 
 
 def test_ours_is_read_where_none_is_given():

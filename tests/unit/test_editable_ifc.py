@@ -21,7 +21,7 @@ CATALOGUE = {
     "windows": {"pane": 1.2},
     "facade_m": 0.3,
     "classification": {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"},
-    "codes": {"brick": "W.1"},
+    "codes": {"walls": {"brick": "W.1"}, "doors": {"pane": "D.9"}, "windows": {}},
 }
 SETTINGS = make_draft_settings(0.05, CATALOGUE)
 # an open leaf of the door between the rooms, hinged at its south jamb and standing to the east

@@ -34,8 +34,8 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     -------
     dict
         `walls`, `doors` and `windows`, each a dict of name to size in metres; `facade_m`;
-        `classification`, the name of a `system` and the code of each list, empty of none; `codes`,
-        by the names of entries that have their own.
+        `classification`, the name of a `system` and the code of each list, empty of none; `codes`
+        of entries that have their own, of each list by their names.
 
     Raises
     ------
@@ -49,11 +49,11 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     if set(values) != wanted:
         wrong = ", ".join(sorted(map(str, wanted ^ set(values))))
         raise StageError(f"{file}: has too much or too little: {wrong}; {_REMEDY}")
-    codes: dict[str, str] = {}
+    codes: dict[str, dict[str, str]] = {kind: {} for kind in _LIMITS_M}
     return {
         "classification": _check_classification(f"{file}: classification", classification),
         "codes": codes,
-        **{k: _check_sizes(f"{file}: {k}", k, values[k], codes) for k in _LIMITS_M},
+        **{k: _check_sizes(f"{file}: {k}", k, values[k], codes[k]) for k in _LIMITS_M},
         "facade_m": _check_size(f"{file}: facade_m", values["facade_m"], _FACADE_M),
     }
 

@@ -69,7 +69,7 @@ class StoreyPlan:
         system = catalogue.get("classification", {})
         if not system:
             return "", ""
-        return system["system"], catalogue["codes"].get(name, system[kind])
+        return system["system"], catalogue["codes"][kind].get(name, system[kind])
 
     def leads_outside(self, opening: int) -> bool:
         """Return whether the wall that an opening is in is external."""
