@@ -210,6 +210,25 @@ def test_a_plan_is_turned_unless_it_is_not_to_be():
     assert any("not turned" in text for text in said)
 
 
+@pytest.mark.parametrize(
+    ("size_m", "turn_deg", "scale"),
+    [
+        # at 1:75 it is 270 mm by 203 mm: A3 has about 340 by 190 for it lying, 220 by 310 upright
+        ((20.0, 15.0), 90, 75),
+        ((15.0, 20.0), 0, 75),
+        # either way at one scale
+        ((10.0, 9.0), 0, 50),
+    ],
+)
+def test_a_plan_is_turned_by_a_quarter_where_it_is_drawn_larger(size_m, turn_deg, scale):
+    width_m, depth_m = size_m
+    corners = [(0, 0), (width_m, 0), (width_m, depth_m), (0, depth_m), (0, 0)]
+    sides = [(*one, *other) for one, other in itertools.pairwise(corners)]
+    walls = floorplan_making.walls([(side, 0.2, 2, 3, "observed") for side in sides])
+    page = composition.compose_sheet(replace(bare(), walls=walls)).page
+    assert (round(page.turn_deg) % 180, page.scale, page.name) == (turn_deg, scale, "A3")
+
+
 def test_chains_and_rooms_measure_the_house():
     sheet = composition.compose_sheet(plan())
     measured = sorted({float(d.word.text.removeprefix("~")) for d in sheet.dimensions})

@@ -82,7 +82,7 @@ def lay_out(
         What the title block states beside the plan.
     turn_deg : float, optional
         The plan is turned by, counterclockwise; by default so that its main walls run along the
-        sheet.
+        sheet, the way in which it is drawn larger.
     least_scale : int
         Least denominator of its scale, as of the other sheets of a set.
     names : sequence of str
@@ -97,10 +97,24 @@ def lay_out(
     plan, marks, symbols = shown.plan, shown.marks, shown.symbols
     # the scale bar with the axes takes six rows
     blocks = [6, len(_list_legend(shown, marks, is_about=True)), len(shown.notes), len(plan.areas)]
-    turn_deg = -plan.main_direction_deg if turn_deg is None else turn_deg
-    extent = _extent(marks, [symbol.ends_m for symbol in symbols], turn_deg)
+    along_deg = -plan.main_direction_deg
+    turns_deg = (along_deg, along_deg + 90) if turn_deg is None else (turn_deg,)
+    ends_m = [symbol.ends_m for symbol in symbols]
     around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
-    page = choose_page(*extent, turn_deg, blocks, least_scale, names=names, around_mm=around_mm)
+    pages = [
+        choose_page(
+            *_extent(marks, ends_m, turn),
+            turn,
+            blocks,
+            least_scale,
+            names=names,
+            around_mm=around_mm,
+        )
+        for turn in turns_deg
+    ]
+    # a quarter more where the plan is drawn larger so, on a sheet that is no larger
+    page = min(pages, key=lambda of: (np.prod(of.size_mm) > np.prod(pages[0].size_mm), of.scale))
+    turn_deg = page.turn_deg
     page = replace(page, locale=facts.locale)
     # doors that swing out put the chain before them farther off: room on the other side goes there
     swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
