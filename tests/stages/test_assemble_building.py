@@ -147,9 +147,8 @@ def test_each_storey_has_a_layout_with_its_name_that_shows_it_alone(house):
         assert {layer[:2] for layer in port.frozen_layers} == {f"{3 - number}-"}
         shown = port.get_transformation_matrix().transform(place) - port.dxf.center
         sides.append((round(shown.x, 3), round(shown.y, 3)))
-    # of both the corner is 4.05 m (3.6 m, and half of the 0.9 m by which a door swings out) and
-    # 1.5 m off the middle, 1:50; they lie as in the building
-    assert sides == [(81.0, 30.0), (-30.0, 81.0)]
+    # of both the corner is 3.6 m and 1.5 m off the middle, 1:50; they lie as in the building
+    assert sides == [(72.0, 30.0), (-30.0, 72.0)]
 
 
 def test_evidence_and_dimensions_of_storeys_are_those_of_their_own_drawings(house, floors):

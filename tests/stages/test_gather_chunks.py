@@ -27,7 +27,7 @@ def make_visibility(scans, registration, output, chunk=None):
 
 def make_hulls(scans, registration, output, chunk=None):
     settings = stage_settings.select_hulls(SETTINGS)
-    build_hulls(scans, registration, output, **settings, threads=1, chunk=chunk)
+    build_hulls(scans, registration, output, settings=settings, threads=1, chunk=chunk)
 
 
 def make_walls(scans, registration, output, chunk=None):
