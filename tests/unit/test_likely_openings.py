@@ -11,6 +11,7 @@ from helpers.label_making import paired, scans_at, with_hole
 from scanplan.plan.model import priors
 from scanplan.plan.model.likely_openings import settle_openings
 from scanplan.plan.model.wall_labels import LabelEvidence, label_wall
+from scanplan.plan.plan_wall import Bend
 from scanplan.plan.rooms.room import Room
 
 LENGTH_M = 5.0
@@ -38,7 +39,8 @@ def opened(low_m, high_m, heights_m=(0, 2.1), faces=None):
 
 
 def settled(wall, rooms):
-    return list(settle_openings(wall, rooms, max_door_m=1.4))
+    parts, _ = settle_openings(wall, rooms, max_door_m=1.4)
+    return parts
 
 
 class TestSettled:
@@ -60,6 +62,21 @@ class TestSettled:
         assert len(kept.left) == len(wall.left)
         (outer,) = settled(opened(2, 3.2, (0.9, 2.1), faces=[(0, 5)]), BOTH[:1])
         assert [of.kind for of in outer.openings] == ["window"]
+
+    def test_what_is_nearly_likely_is_told(self):
+        wall = opened(2, 2.9)
+        (door,) = [replace(of, p_kind=0.3) for of in wall.openings]
+        parts, (near,) = settle_openings(replace(wall, openings=[door]), BOTH, max_door_m=1.4)
+        assert len(parts) == 2 and near.kind == "door" and 0.3 <= near.p < 0.5
+        np.testing.assert_allclose(np.sort(near.ends_m[:, 0]), [2, 2.9], atol=0.03)
+
+    def test_where_no_room_is_known_all_stays(self):
+        wall = opened(2, 2.55)
+        assert settled(wall, []) == [wall]
+
+    def test_a_curved_wall_stays(self):
+        wall = replace(opened(2, 2.55), bend=Bend(np.array([2.5, -9.0]), 9.0, 0.01))
+        assert settled(wall, ONE) == [wall]
 
     def test_what_is_wider_than_a_door_stays(self):
         (wall,) = settled(opened(2, 3.6), ONE)

@@ -97,7 +97,7 @@ def grow_plan(
         sum(
             not own[0].planar and find_lift_m(plan, level) is None
             for plan, own in surveys
-            if level not in (None, plan)
+            if level is not None and level is not plan
         ),
         steps,
         contributions,

@@ -526,13 +526,16 @@ class _Survey:
 
 def _settle(surfaces: _Surfaces, spaces: _Spaces, max_door_m: float) -> _Surfaces:
     """Return surfaces without openings that are unlikely where rooms lie as they do."""
-    settled = [
-        (part, top_m)
-        for wall, top_m in zip(surfaces.walls, surfaces.tops_m, strict=True)
-        for part in settle_openings(wall, spaces.rooms, max_door_m)
+    settled = [settle_openings(wall, spaces.rooms, max_door_m) for wall in surfaces.walls]
+    tops_m = [
+        top_m for (parts, _), top_m in zip(settled, surfaces.tops_m, strict=True) for _ in parts
     ]
-    walls, tops_m = [wall for wall, _ in settled], [top_m for _, top_m in settled]
-    return replace(surfaces, walls=walls, tops_m=tops_m)
+    return replace(
+        surfaces,
+        walls=[part for parts, _ in settled for part in parts],
+        tops_m=tops_m,
+        nearly=[*surfaces.nearly, *(of for _, nearly in settled for of in nearly)],
+    )
 
 
 def _stand_plumb(rays: RaySet) -> FloatArray:

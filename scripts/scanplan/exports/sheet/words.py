@@ -121,7 +121,7 @@ def label_openings(
         text = _join_words(text, mark)
         if text:
             kind = "verify" if mark else "width"
-            ends = page.to_paper(symbol.ends_m)
+            ends = page.to_paper(symbol.axis_m)
             thick_mm = symbol.thickness_m * page.mm_per_m
             yield from _place_beside(page, kind, text, ends, thick_mm, symbol.element, space)
 

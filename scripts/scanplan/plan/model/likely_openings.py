@@ -5,31 +5,45 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from scanplan.plan.model import priors
+import numpy as np
+
+from scanplan.plan.model import line_labels, priors
 from scanplan.plan.openings import Opening
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.plan.rooms.room import Room, rooms_beside
 from scanplan.plan.tolerances import END_M
 
 _LIKELY = 0.5  # what is less likely is not drawn
 
 
-def settle_openings(wall: PlanWall, rooms: Sequence[Room], max_door_m: float) -> Iterator[PlanWall]:
-    """Yield what is left of a wall, with those of its openings that are likelier than not.
+def settle_openings(
+    wall: PlanWall, rooms: Sequence[Room], max_door_m: float
+) -> tuple[list[PlanWall], list[Nearly]]:
+    """Return what is left of a wall, with its openings that are likelier than not, and the others.
 
     Where one down to the floor is none, nothing is known to be: the wall ends before it, and
-    another begins behind it. What is of no kind, or wider than a door, stays as it is.
+    another begins behind it. What is of no kind, or wider than a door, stays as it is; so do curved
+    walls, whose openings are found with their circle, and all where no room is known.
     """
+    if wall.bend or not rooms:
+        return [wall], []
     openings: list[Opening] = []
     ways: list[Opening] = []
+    nearly: list[Nearly] = []
     for opening in wall.openings:
         if opening.type_name(max_door_m) not in priors.LEAST_USUAL_M:
             openings.append(opening)
-        elif (p := _weigh(opening, wall, rooms)) >= _LIKELY:
+            continue
+        p = _weigh(opening, wall, rooms)
+        if p >= _LIKELY:
             openings.append(replace(opening, p_kind=p))
-        elif not opening.is_above_wall:
+            continue
+        if not opening.is_above_wall:
             ways.append(opening)
-    return _part(replace(wall, openings=openings), ways)
+        if p >= line_labels.NEARLY:
+            ends_m = wall.at(np.array([opening.low_m, opening.high_m]))
+            nearly.append(Nearly(opening.kind, ends_m, p))
+    return list(_part(replace(wall, openings=openings), ways)), nearly
 
 
 def _part(wall: PlanWall, ways: Sequence[Opening]) -> Iterator[PlanWall]:
