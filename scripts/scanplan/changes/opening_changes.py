@@ -225,8 +225,9 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     if p >= LIKELY:
         return tell(GONE, p)
     # whatever closes it, it is closed: which of the two is told apart by its other side alone
-    rest = _rate_shut(views) - p
-    said = f"shut {rest:.2f}, walled up {p:.2f}: flush with the one side that was seen"
+    rest = max(_rate_shut(views) - p, 0.0)
+    sides = "one side that was" if len(flush) == 1 else "sides that were"
+    said = f"shut {rest:.2f}, walled up {p:.2f}: flush with the {sides} seen"
     doubt = said if is_flush else ""
     return tell(SHUT, _rate_shut(views) * opening.held, doubt)
 
