@@ -10,7 +10,7 @@ import numpy as np
 
 from scanplan.changes.comparison import Scans
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import MOUNTED_M
+from scanplan.changes.ray_cells import is_mounted_at
 from scanplan.changes.stale_rays import StalePlaces
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
@@ -141,8 +141,7 @@ def place_drive(
     if not scans[0].planar:
         return Drive(plan.name, scans, motion, find_lift_m(plan, level) or 0.0, floor_m)
     own_m = float(np.median(scans[1].map_from_sensor[:, 2, 3]))
-    lowest_m, highest_m = MOUNTED_M
-    height_m = own_m if lowest_m <= own_m <= highest_m else _USUAL_M
+    height_m = own_m if is_mounted_at(own_m) else _USUAL_M
     return Drive(plan.name, scans, motion, floor_m + height_m - own_m, floor_m)
 
 

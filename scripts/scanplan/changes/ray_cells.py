@@ -26,8 +26,7 @@ N_ROWS = 12
 """Up to 3 m."""
 HIGHEST_M = 2.0
 """Above the floor: lintels, and what planar scanners are mounted below."""
-MOUNTED_M = (0.1, 2.0)
-"""Where planar scanners are mounted, above the floor: from a robot's bumper to overhead."""
+_MOUNTED_M = (0.1, 2.0)  # above the floor: from a robot's bumper to overhead
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
@@ -114,8 +113,13 @@ def look_at(
 def _find_row(rays: RaySet) -> int:
     """Return the row of a planar survey's plane, as high as its own map says; -1 of none."""
     height_m = float(rays.sensors_m[0, 2]) if rays.planar and len(rays.sensors_m) else 0.0
-    lowest_m, highest_m = MOUNTED_M
-    return int(height_m / ROW_M) if lowest_m <= height_m <= highest_m else -1
+    return int(height_m / ROW_M) if is_mounted_at(height_m) else -1
+
+
+def is_mounted_at(height_m: float) -> bool:
+    """Return whether a planar scanner may be as high above the floor."""
+    lowest_m, highest_m = _MOUNTED_M
+    return lowest_m <= height_m <= highest_m
 
 
 def _spread_m(rays: RaySet) -> float:
@@ -245,15 +249,15 @@ def compare_looks(first: Looks, other: Looks) -> Later:
     """
     solid = first.solid
     passes, hits = other.passes, other.hits
-    is_denied = np.zeros(len(solid), bool)
+    stands, is_denied = (hits >= FEW) & (hits > passes), np.zeros(len(solid), bool)
     if first.row >= 0 and not other.is_flat:
         beside = slice(max(first.row - 1, 0), first.row + 2)
-        is_denied = ((hits >= FEW) & (hits > passes))[:, beside].any(axis=1)
+        is_denied = stands[:, beside].any(axis=1)
         solid = solid & (np.arange(hits.shape[1]) == first.row)
     elif other.row >= 0 and not first.is_flat:
         solid = solid[:, other.row, None]
     elif first.is_flat and not other.is_flat:
-        is_denied = ((hits >= FEW) & (hits > passes)).any(axis=1) | (passes[:, _LOW_ROW] < FEW)
+        is_denied = stands.any(axis=1) | (passes[:, _LOW_ROW] < FEW)
         solid = np.repeat(solid, other.hits.shape[1], axis=1)
     elif first.is_flat and other.is_mixed and not first.is_mixed:
         # it may have looked over all that a planar scanner saw

@@ -207,6 +207,18 @@ class PlanWall(Span):
             closed=closed,
         )
 
+    def part(self, spans_m: FloatArray) -> list["PlanWall"]:
+        """Return it between places along it (n, 2), without what has no face there."""
+        parts = [self.between(*span_m) for span_m in spans_m.tolist()]
+        return [part for part in parts if part.members]
+
+    def part_beside(self, openings: Sequence[Opening]) -> list["PlanWall"]:
+        """Return what is left of it before, between and behind openings, without these."""
+        if not openings:
+            return [self]
+        jambs_m = [jamb_m for opening in openings for jamb_m in (opening.low_m, opening.high_m)]
+        return self.part(np.sort([self.low_m, *jambs_m, self.high_m]).reshape(-1, 2))
+
     def goes_on_as(self, other: "PlanWall") -> bool:
         """Return whether another wall is much the same way, in the line of this one."""
         return bool(self.are_in_line(other.line.normal[None], other.ends[None])[0])

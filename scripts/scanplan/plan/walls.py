@@ -218,8 +218,7 @@ def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[Pla
             ends_m += [float(through_m[row].mean()) for row in near]
     if not crosses:
         return [wall]
-    parts = [wall.between(*span_m) for span_m in np.sort(ends_m).reshape(-1, 2).tolist()]
-    return [part for part in parts if part.members]
+    return wall.part(np.sort(ends_m).reshape(-1, 2))
 
 
 def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:

@@ -9,7 +9,8 @@ import numpy as np
 
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
-from scanplan.types import Array, Columns, FloatArray, IntArray
+from scanplan.plan.model.priors import log_odds
+from scanplan.types import Columns, FloatArray, IntArray
 from scanplan.validation import surroundings
 from scanplan.validation.drawn_surfaces import FACE
 
@@ -36,7 +37,6 @@ FIXED = ("wide", "broad")
 """Features that are the same however often an element is seen."""
 OF_WALL = ("host", "wall")
 """Features that an opening in no wall never has."""
-_SUREST = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
 _USUAL_M = {"window": 1.0, "glass": 1.0}
 _LEAF_M = 0.75
 # narrower ones are between things: the least usual leaf (DIN 18101), and windows of the tuning half
@@ -73,7 +73,7 @@ def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
 
 
 def _odds_of_walls(plan: FloorPlan) -> dict[str, FloatArray]:
-    return {"thing": _log_odds(plan.walls["p_wall"]), "line": _log_odds(plan.walls["p_solid"])}
+    return {"thing": log_odds(plan.walls["p_wall"]), "line": log_odds(plan.walls["p_solid"])}
 
 
 def _describe_walls(plan: FloorPlan, of_faces: FloatArray) -> dict[str, FloatArray]:
@@ -101,7 +101,7 @@ def _describe_openings(plan: FloorPlan, walls: dict[str, FloatArray]) -> dict[st
     # a passage in no wall is narrow floor: neither wall nor rays are asked of it
     no_wall = np.where(kinds == "passage", np.nan, 0.0)
     return {
-        "kind": _log_odds(openings["p_kind"]),
+        "kind": log_odds(openings["p_kind"]),
         "host": np.where(is_hosted, np.append(walls["thing"], 0.0)[plan.hosts], no_wall),
         "wall": np.where(is_hosted, np.append(walls["agreement"], 0.0)[plan.hosts], no_wall),
         "rays": np.where(is_hosted, np.log1p(openings["n_rays"]), no_wall),
@@ -129,12 +129,6 @@ def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
 def _sum_by_room(rooms: IntArray, numbers: IntArray, lengths_m: FloatArray) -> FloatArray:
     """Return the sum (r,) of the lengths that have each room's number."""
     return np.array([lengths_m[numbers == room].sum() for room in rooms.tolist()], np.float64)
-
-
-def _log_odds(p: Array) -> FloatArray:
-    """Return the logarithms of odds (n,) of probabilities, no surer than densities are known."""
-    known = np.clip(np.asarray(p, np.float64), _SUREST, 1 - _SUREST)
-    return np.log(known / (1 - known))
 
 
 def _agreements(validation: Columns, numbers: IntArray) -> tuple[FloatArray, FloatArray]:

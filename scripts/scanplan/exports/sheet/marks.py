@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from scanplan.geometry.arcs import NO_CIRCLES, SAGITTA_M, bend_path
+from scanplan.geometry.lines import left_normals
 from scanplan.types import FloatArray
 
 Facts = Mapping[str, str | int | float | bool]
@@ -122,12 +123,16 @@ class Symbol:
         return float(np.hypot(*(self.ends_m[1] - self.ends_m[0])))
 
     @property
+    def is_hinged(self) -> bool:
+        """Whether a leaf of it swings."""
+        return self.kind == "swing" and self.block != "SLIDING"
+
+    @property
     def axis_m(self) -> FloatArray:
         """Its line (2, 2) in the middle of its wall."""
-        if self.kind != "swing" or self.block == "SLIDING":
+        if not self.is_hinged:
             return self.ends_m
-        x, y = (self.ends_m[1] - self.ends_m[0]) / self.width_m
-        return self.ends_m - self.thickness_m / 2 * np.array([-y, x])
+        return self.ends_m - self.thickness_m / 2 * left_normals(self.ends_m[None])
 
     @property
     def surrounded_by(self) -> list[str]:

@@ -7,9 +7,9 @@ import numpy as np
 from scanplan.exports.sheet.content import facts_of, is_doubtful
 from scanplan.exports.sheet.leaves import draw_swing, find_leaves
 from scanplan.exports.sheet.marks import Symbol
+from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import FloatArray
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
@@ -21,14 +21,15 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
     left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
     doubtful, leaves = is_doubtful(plan.openings), find_leaves(plan.furniture)
     symbols: list[Symbol] = []
-    for row, ends_m in enumerate(floorplan.centrelines_m(plan.openings)):
+    lines_m = floorplan.centrelines_m(plan.openings)
+    lefts, of_walls = left_normals(lines_m), left_normals(floorplan.centrelines_m(plan.walls))
+    for row, (ends_m, left) in enumerate(zip(lines_m, lefts, strict=True)):
         kind, number = plan.openings["type"][row], plan.openings["opening"][row]
         host = plan.hosts[row]
-        left = _left_of(ends_m)
         thick_m = float(left_m[host] + right_m[host]) or plan.assumed_thickness_m
         shift_m = (left_m[host] - right_m[host]) / 2
         # a wall's sides are left and right of its own line, which an opening may run against
-        if host >= 0 and left @ _left_of(floorplan.centrelines_m(plan.walls)[host]) < 0:
+        if host >= 0 and left @ of_walls[host] < 0:
             shift_m = -shift_m
         facts = facts_of("opening", plan.openings, row)
         said = [f"{kind} {number}, {plan.openings['width_m'][row]:.2f} m"]
@@ -73,8 +74,3 @@ def find_swings(plan: FloorPlan) -> dict[int, Swing]:
             before_m, after_m = (ends[1] - ends[0] for ends in (lines_m[row], symbol.ends_m))
             found[row] = Swing(symbol.block, bool(before_m @ after_m < 0))
     return found
-
-
-def _left_of(ends_m: FloatArray) -> FloatArray:
-    x, y = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
-    return np.array([-y, x])

@@ -56,8 +56,7 @@ def choose_block(symbol: Symbol) -> str:
 
 def block_scales(symbol: Symbol) -> tuple[float, float]:
     """Return the scales of its block along its wall and across; equal ones keep arcs round."""
-    is_round = symbol.kind == "swing" and symbol.block != "SLIDING"
-    across_m = symbol.width_m if is_round else symbol.thickness_m
+    across_m = symbol.width_m if symbol.is_hinged else symbol.thickness_m
     return symbol.width_m, across_m
 
 

@@ -60,7 +60,7 @@ def cut_off_pillars(
             if not opening.below_wall
             and any(leads_to_pillar(wall, opening, met_m, sign) for sign in (-1, 1))
         ]
-        parts.append(_cut_at(wall, beside))
+        parts.append(wall.part_beside(beside))
     return parts
 
 
@@ -69,13 +69,3 @@ def _ends_on_line(wall: PlanWall, others: Sequence[PlanWall]) -> list[float]:
     ends_m = np.array([other.ends for other in others]).reshape(-1, 2)
     is_on = np.abs(wall.line.offset_m(ends_m)) <= CORNER_M
     return wall.line.along_m(ends_m[is_on]).tolist()
-
-
-def _cut_at(wall: PlanWall, openings: Sequence[Opening]) -> list[PlanWall]:
-    """Return the parts of a wall between openings, without these."""
-    if not openings:
-        return [wall]
-    jambs_m = [jamb_m for opening in openings for jamb_m in (opening.low_m, opening.high_m)]
-    bounds_m = np.sort([wall.low_m, *jambs_m, wall.high_m]).reshape(-1, 2)
-    parts = [wall.between(*span_m) for span_m in bounds_m.tolist()]
-    return [part for part in parts if part.members]

@@ -1,9 +1,8 @@
 """Which openings of walls are drawn, once it is known what lies on both sides of them."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -43,21 +42,8 @@ def settle_openings(
         if p >= line_labels.NEARLY:
             ends_m = wall.at(np.array([opening.low_m, opening.high_m]))
             nearly.append(Nearly(opening.kind, ends_m, p))
-    return list(_part(replace(wall, openings=openings), ways)), nearly
-
-
-def _part(wall: PlanWall, ways: Sequence[Opening]) -> Iterator[PlanWall]:
-    """Yield what is left of a wall before, between and behind ways."""
-    if not ways:
-        yield wall
-        return
-    spans_m = [(of.low_m, of.high_m) for of in ways]
-    for (_, begin_m), (end_m, _) in pairwise(
-        [(wall.low_m, wall.low_m), *spans_m, (wall.high_m, wall.high_m)]
-    ):
-        part = wall.between(begin_m, end_m)
-        if end_m - begin_m >= END_M and part.members:
-            yield part
+    parts = replace(wall, openings=openings).part_beside(ways)
+    return [part for part in parts if not ways or part.length_m >= END_M], nearly
 
 
 def _weigh(opening: Opening, wall: PlanWall, rooms: Sequence[Room]) -> float:

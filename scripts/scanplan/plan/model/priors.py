@@ -12,7 +12,7 @@ import numpy as np
 
 from scanplan.plan.model.surface_counts import COLUMN_M
 from scanplan.rays.ray_set import ROWS_M
-from scanplan.types import FloatArray, IntArray
+from scanplan.types import Array, FloatArray, IntArray
 
 KINDS = ("solid", "low", "open", "glass", "door", "window", "shut")
 """What a stretch is: wall; a wall that ends below the ceiling; nothing; a pane down to the floor; a
@@ -42,7 +42,7 @@ _ENDS = np.array(
 # to square differs from sensor to sensor, so that what passes hardly speaks against a front
 _PASSED = np.array((0.002, 1, 0.002, 0.002, 1, 0.002, 0.002))
 """How likely the same are where the sensor was carried through: a pose may be wrong."""
-_LEAST_P = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
+_SUREST = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
 _WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
 ROWS_A_WITNESS = 10
@@ -251,6 +251,12 @@ def log_ends(*, line: int, goes_on: bool) -> FloatArray:
     return _log_shares(_AT_NEXT if goes_on else _AT_ENDS[line])
 
 
+def log_odds(p: Array | float) -> FloatArray:
+    """Return the logarithms of odds (n,) of probabilities, no surer than densities are known."""
+    known = np.clip(np.asarray(p, np.float64), _SUREST, 1 - _SUREST)
+    return np.log(known / (1 - known))
+
+
 def weigh_opening(kind: str, p_labels: float, width_m: float, rooms: tuple[int, int]) -> float:
     """Return the log odds that an opening is one, and no joint, mirror or board.
 
@@ -262,8 +268,7 @@ def weigh_opening(kind: str, p_labels: float, width_m: float, rooms: tuple[int, 
     >>> round(weigh_opening("window", 0.99, 0.6, (0, 1)), 2)
     -3.31
     """
-    p = min(max(p_labels, _LEAST_P), 1 - _LEAST_P)
-    of_labels = 0.0 if math.isnan(p_labels) else math.log(p / (1 - p))
+    of_labels = 0.0 if math.isnan(p_labels) else float(log_odds(p_labels))
     usual_m = LEAST_USUAL_M[kind]
     narrow = math.log(max(min(width_m, usual_m), COLUMN_M) / usual_m)
     is_within = rooms[0] == rooms[1] if kind == "door" else min(rooms) >= 0
