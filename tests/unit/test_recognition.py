@@ -51,6 +51,31 @@ def test_a_room_is_found_again_where_it_lies():
     assert abs(se3.pose_yaw_rad(found.fit.target_from_source) - 0.2) < 0.01
 
 
+@pytest.mark.parametrize(("away", "is_found"), [([1.3, -0.8], True), ([0.2, 0.1], False)])
+def test_a_place_that_was_tried_is_not_found_again(away, is_found):
+    source = submap(room(6, 4), frame=se3.invert_pose(planar_poses([away], [0.0])[0]))
+    found = recognition.find_submap(
+        source, submap(room(6, 4)), np.eye(4), reach_m=2.0, turn_rad=0.2, elsewhere=True
+    )
+    assert (found is not None) == is_found
+
+
+def test_sums_and_transforms_correlate_alike(monkeypatch):
+    true = planar_poses([[0.9, -0.4]], [0.1])[0]
+    found = []
+    for most in (0, 1e9):
+        monkeypatch.setattr(recognition, "_SUMS_PER_CELL", most)
+        source = submap(room(6, 4), frame=se3.invert_pose(true))
+        found.append(
+            recognition.find_submap(
+                source, submap(room(6, 4)), np.eye(4), reach_m=2.0, turn_rad=0.2
+            )
+        )
+    by_transforms, by_sums = (each.fit.target_from_source for each in found)
+    np.testing.assert_allclose(by_sums, by_transforms, atol=1e-9)
+    np.testing.assert_allclose(by_sums, true, atol=0.02)
+
+
 def test_another_room_is_not_found():
     window = {"reach_m": 2.0, "turn_rad": np.radians(20)}
     assert (

@@ -1,7 +1,6 @@
 """Pairs of neighbouring scans, and which share of their points meet: of the right reading most."""
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.types import FloatArray, IntArray
@@ -54,6 +53,8 @@ def measure_met(
     scale : float
         How many of their unit a metre is.
     """
+    from scipy.spatial import KDTree  # 0.3 s, before it is known that any pair is asked
+
     if len(target_m) == 0 or len(source_m) == 0:
         return 0.0
     size = 2 if planar else 3

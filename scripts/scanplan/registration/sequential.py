@@ -299,6 +299,8 @@ class SequentialRegistrar(ScanRegistrar):
             se3.invert_pose(world_from_target) @ world_from_source,
             reach_m=2 * self.settings.max_correction_m,
             turn_rad=np.radians(4 * self.settings.max_correction_deg),
+            # a localiser's scan was aligned, and odometry's fits nowhere yet
+            elsewhere=not self.is_odometry,
         )
         if found is None:
             return None

@@ -5,10 +5,9 @@ the sensor was then.
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.recordings import candidates, scan_pairs
@@ -16,6 +15,9 @@ from scanplan.recordings.clouds import Scan
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log
 from scanplan.types import FloatArray, IntArray
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 MOST_S = 1.0
 """Clocks that are farther apart are told by times of receipt."""
@@ -39,7 +41,7 @@ PosesAt = Callable[[IntArray], FloatArray]
 
 
 class _Pair(NamedTuple):
-    target: KDTree
+    target: "KDTree"
     source_m: FloatArray  # (n, 3)
     at_ns: IntArray  # (2,): in the middle of both sweeps
 
@@ -130,6 +132,8 @@ def _moved_between(poses_at: PosesAt, t_ns: IntArray, delay_s: float) -> FloatAr
 
 def _make_pair(one: Scan, other: Scan, *, planar: bool) -> _Pair:
     """Return a pair of scans as if all their points were seen in the middle of their sweeps."""
+    from scipy.spatial import KDTree  # 0.3 s, and few drives show a delay
+
     middle_s = [
         0.0 if scan.time_s is None else float(np.mean(scan.time_s)) for scan in (one, other)
     ]

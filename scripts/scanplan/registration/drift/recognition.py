@@ -6,6 +6,7 @@ how exactly, and the rays of both whether it can be.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy import sparse
@@ -16,9 +17,10 @@ from scanplan.geometry import se3
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration import icp
 from scanplan.registration.drift.submaps import Submap
-from scanplan.types import Array, BoolArray, FloatArray, IntArray
+from scanplan.types import Array, BoolArray, FloatArray
 
 _FINE_M = 0.1  # cell in which walls and free floor are compared: less than a wall is thick
+_SUMS_PER_CELL = 15  # cost less than the two Fourier transforms that spare them
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,7 @@ def find_submap(
     *,
     reach_m: float,
     turn_rad: float,
+    elsewhere: bool = False,
 ) -> Recognition | None:
     """Find a submap on another within a window; None where no place or more than one fits.
 
@@ -78,12 +81,17 @@ def find_submap(
         The middle of the window.
     reach_m, turn_rad : float
         Half its width, for shifts and turns.
+    elsewhere : bool
+        Whether it was aligned from the middle in vain: None where that is the likeliest place.
     """
     found: list[Recognition] = []
     # from twice as far off an alignment still finds its way
     cell_m = 2.5 * _FINE_M
     window = (reach_m, turn_rad, cell_m)
-    for start in _correlate(source, target, target_from_source, *window):
+    starts = _correlate(source, target, target_from_source, *window)
+    if elsewhere and starts and _apart_m(source, starts[0], target_from_source) <= 2 * cell_m:
+        return None
+    for start in starts:
         fit = icp.align_clouds(
             source.cloud,
             target.cloud,
@@ -101,6 +109,12 @@ def find_submap(
     if not found or np.linalg.norm(places_m - places_m[0], axis=1).max() > 2 * cell_m:
         return None
     return max(found, key=lambda each: each.agreement.overlap)
+
+
+def _apart_m(source: Submap, one: FloatArray, other: FloatArray) -> float:
+    """Return how far apart two motions put a submap's points, root mean square."""
+    apart_m = se3.transform_points(one - other, source.cloud.xyz_m)
+    return float(np.sqrt(np.mean(apart_m**2) * 3))
 
 
 def compare_submaps(source: Submap, target: Submap, target_from_source: FloatArray) -> Agreement:
@@ -209,19 +223,16 @@ def _correlate(
     size = np.ceil((np.ptp(target_xy_m, axis=0) + 2.0) / cell_m).astype(int)
     moved_m = se3.transform_points(target_from_source, source.cloud.xyz_m)[:, :2]
     radius_m = np.linalg.norm(moved_m - target_from_source[:2, 3], axis=1).max()
-    # shifts that would wrap around must not be read: the raster is wider than the window
-    padded = [-(-(int(cells) + 2 * n_shifts + 2) // 16) * 16 for cells in size]
-    walls = np.zeros(padded)
+    walls = np.zeros(size)
     column, row = ((target_xy_m - low_m) / cell_m).astype(int).T
     walls[column, row] = 1.0
-    blurred = _blur(walls)
-    raster = _WallRaster(low_m, cell_m, size, padded, np.fft.rfft2(blurred))
+    raster = _WallRaster(low_m, cell_m, _blur(walls), n_shifts)
     step_rad = max(cell_m / radius_m, np.radians(1.0))
     n_turns = int(np.ceil(turn_rad / step_rad))
     scores = []
     turns = np.arange(-n_turns, n_turns + 1) * step_rad
     for turn in turns:
-        scores.append(raster.score_shifts(_turned(source, target_from_source, turn), n_shifts))
+        scores.append(raster.score_shifts(_turned(source, target_from_source, turn)))
     score = np.array(scores)
     best = score.max()
     motions = []
@@ -260,31 +271,46 @@ class _WallRaster:
     low_m : (2,) float64
         The corner that cells are counted from.
     cell_m : float
-    size : (2,) int
-        Cells along x and y.
-    padded : list of int
-        The same, wider: a shift must not wrap around.
-    spectrum : (padded[0], padded[1] // 2 + 1) complex128
-        Fourier transform of the cells.
+    walls : (w, h) float64
+        Along x and y.
+    n_shifts : int
+        Points are shifted by up to so many cells, either way.
     """
 
     low_m: FloatArray
     cell_m: float
-    size: IntArray
-    padded: list[int]
-    spectrum: Array
+    walls: FloatArray
+    n_shifts: int
 
-    def score_shifts(self, xy_m: FloatArray, n_shifts: int) -> FloatArray:
+    def score_shifts(self, xy_m: FloatArray) -> FloatArray:
         """Return (2 n + 1, 2 n + 1) correlations of points with the cells, by shift in x and y."""
-        cell = np.floor((xy_m - self.low_m) / self.cell_m).astype(int)
+        cell = np.floor((xy_m - self.low_m) / self.cell_m).astype(int) + self.n_shifts
+        wide = self._windows.shape[:2]
         # what lies outside for every shift cannot meet a wall
-        inside = ((cell >= -n_shifts) & (cell < self.size + n_shifts)).all(axis=1)
-        points = np.zeros(self.padded)
-        kept = cell[inside]
-        points[kept[:, 0] % self.padded[0], kept[:, 1] % self.padded[1]] = 1.0
-        correlation = np.fft.irfft2(self.spectrum * np.conj(np.fft.rfft2(points)), s=self.padded)
-        shifts = np.arange(-n_shifts, n_shifts + 1)
-        return correlation[np.ix_(shifts % self.padded[0], shifts % self.padded[1])]
+        inside = ((cell >= 0) & (cell < wide)).all(axis=1)
+        flat = np.unique(np.ravel_multi_index(tuple(cell[inside].T), wide))
+        column, row = np.unravel_index(flat, wide)
+        if len(flat) * (2 * self.n_shifts + 1) ** 2 <= _SUMS_PER_CELL * np.prod(self._padded):
+            return self._windows[column, row].sum(axis=0)
+        points = np.zeros(self._padded)
+        points[column, row] = 1.0
+        correlation = np.fft.irfft2(self._spectrum * np.conj(np.fft.rfft2(points)), s=self._padded)
+        return correlation[: 2 * self.n_shifts + 1, : 2 * self.n_shifts + 1]
+
+    @cached_property
+    def _windows(self) -> FloatArray:
+        """What lies around each cell a point may lie in, (w + 2 n, h + 2 n, 2 n + 1, 2 n + 1)."""
+        around = np.pad(self.walls, 2 * self.n_shifts)
+        return np.lib.stride_tricks.sliding_window_view(around, (2 * self.n_shifts + 1,) * 2)
+
+    @cached_property
+    def _padded(self) -> tuple[int, ...]:
+        # shifts that would wrap around must not be read: the raster is wider than the window
+        return tuple(-(-(cells + 4 * self.n_shifts + 1) // 16) * 16 for cells in self.walls.shape)
+
+    @cached_property
+    def _spectrum(self) -> Array:
+        return np.fft.rfft2(np.pad(self.walls, 2 * self.n_shifts), self._padded)
 
 
 def _blur(walls: FloatArray) -> FloatArray:

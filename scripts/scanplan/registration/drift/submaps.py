@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.geometry import se3
-from scanplan.registration.prepared_clouds import PreparedCloud
+from scanplan.registration.prepared_clouds import PreparedCloud, plant_tree
 from scanplan.types import FloatArray, IntArray
 
 
@@ -81,8 +81,6 @@ def merge_scans(
         Of the scans, among all.
     world_from_cloud : (k, 4, 4) float64
     """
-    from scipy.spatial import KDTree  # 0.3 s, and only poses that drift need it
-
     middle = len(rows) // 2
     level = se3.level_frame(world_from_cloud[middle])
     level_from_cloud = se3.invert_pose(level) @ world_from_cloud
@@ -96,7 +94,7 @@ def merge_scans(
         return None
     xy_m = xy_m[first]
     flat_m = np.column_stack([xy_m, np.zeros(len(xy_m))])
-    cloud = PreparedCloud(flat_m, KDTree(xy_m), True, normal[first], None)
+    cloud = PreparedCloud(flat_m, plant_tree(xy_m), True, normal[first], None)
     return Submap(int(rows[middle]), cloud, sensor_xy_m[first])
 
 
