@@ -10,6 +10,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
+from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan import wall_ground
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.plan_wall import PlanWall
@@ -137,18 +138,26 @@ def _tell(
 
 def _returns_above(outline: Polygon, rays: RaySet) -> tuple[FloatArray, IntArray]:
     """Return the returns (n, 3) over an outline, heights above the floor, and their scans (n,)."""
-    x0_m, y0_m, x1_m, y1_m = outline.bounds
-    parts: list[FloatArray] = [np.empty((0, 3))]
-    scans: list[IntArray] = [np.empty(0, np.int64)]
-    for scan, of_scan in enumerate(rays.rows):
-        xyz_m = rays.xyz_m[of_scan]
-        is_near = (xyz_m[:, 0] >= x0_m) & (xyz_m[:, 0] <= x1_m)
-        is_near &= (xyz_m[:, 1] >= y0_m) & (xyz_m[:, 1] <= y1_m)
-        near_m = xyz_m[is_near] - (0.0, 0.0, rays.ground_z_m)
-        is_over = shapely.contains_xy(outline, near_m[:, :2]) & (near_m[:, 2] > SKIRTING_M)
-        parts.append(near_m[is_over])
-        scans.append(np.full(int(is_over.sum()), scan))
-    return np.concatenate(parts), np.concatenate(scans)
+    # no return on an edge is to be missed by rounding
+    box = outline.envelope.buffer(SHORTEST_M, join_style="mitre")
+    corners_m = shapely.get_coordinates(box)[:-1]
+    way_m = corners_m - rays.sensors_m[:, None, :2]
+    middle_m = way_m.mean(axis=1)[:, None]
+    ahead = (middle_m * way_m).sum(axis=2)
+    aside = middle_m[..., 0] * way_m[..., 1] - middle_m[..., 1] * way_m[..., 0]
+    turn_rad = np.arctan2(aside, ahead)
+    is_outside = (ahead > 0).all(axis=1)
+    (outside,), (inside,) = is_outside.nonzero(), (~is_outside).nonzero()
+    ends_m = corners_m[np.stack([turn_rad.argmin(axis=1), turn_rad.argmax(axis=1)])]
+    low, high = rays.rows_between(ends_m[:, outside], outside)
+    # from within they are all around
+    first = rays.first
+    low = np.hstack([low, np.stack([first[inside], first[inside]])])
+    high = np.hstack([high, np.stack([first[inside + 1], first[inside]])])
+    xyz_m, scan = rays.gather_rows(low, high, np.concatenate([outside, inside]))
+    xyz_m = xyz_m - (0.0, 0.0, rays.ground_z_m)
+    is_over = shapely.contains_xy(outline, xyz_m[:, :2]) & (xyz_m[:, 2] > SKIRTING_M)
+    return xyz_m[is_over], scan[is_over]
 
 
 def _fit_rectangle(xy_m: FloatArray) -> Polygon:

@@ -196,7 +196,7 @@ def _make_piece(returns: _Returns, cells: IntArray, grid: bitmap.Grid, rays: Ray
     # above the floor: nothing is known of it where all scans lie in one plane
     low_m, high_m = (z_m + rays.ground_z_m - rays.floor_z_m).tolist()
     return Piece(
-        outline=_draw_outline(_middles_m(cells, grid), grid.cell_m),
+        outline=_draw_outline(cells, grid),
         z_min_m=low_m,
         z_max_m=high_m,
         n_points=len(returns.cell),
@@ -204,13 +204,18 @@ def _make_piece(returns: _Returns, cells: IntArray, grid: bitmap.Grid, rays: Ray
     )
 
 
-def _draw_outline(middle_m: FloatArray, cell_m: float) -> Polygon:
-    """Return the outline of cells (n, 2) that are a cell apart at most, half a cell around them."""
-    reach_m = 1.5 * cell_m
-    boxes = shapely.box(*(middle_m - reach_m).T, *(middle_m + reach_m).T)
-    grown = overlays.unite_areas(boxes, grid=cell_m / 100)
+def _draw_outline(cells: IntArray, grid: bitmap.Grid) -> Polygon:
+    """Return the outline of cells (n,), half a cell around them; a cell apart at most, in order."""
+    # in a row, those that follow one another are one box
+    goes_on = (np.diff(cells, prepend=-2) == 1) & (cells % grid.shape[1] > 0)
+    begins = np.flatnonzero(~goes_on)
+    ends = np.concatenate([begins[1:], [len(cells)]]) - 1
+    reach_m = 1.5 * grid.cell_m
+    low_m = _middles_m(cells[begins], grid) - reach_m
+    high_m = _middles_m(cells[ends], grid) + reach_m
+    grown = overlays.unite_areas(shapely.box(*low_m.T, *high_m.T), grid=grid.cell_m / 100)
     drawn = overlays.simplify_shapes(
-        overlays.buffer_shapes(grown, -cell_m / 2, join_style="mitre"), cell_m
+        overlays.buffer_shapes(grown, -grid.cell_m / 2, join_style="mitre"), grid.cell_m
     )
     return max(shapely.get_parts(drawn), key=lambda part: part.area)
 

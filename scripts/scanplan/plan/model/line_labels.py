@@ -21,6 +21,7 @@ NEARLY = 0.3
 """Least probability of what was nearly drawn: of such things a fourth is there (tuning half)."""
 _MAY_BE = (priors.DOOR, priors.WINDOW, priors.GLASS, priors.SHUT)
 _N_KINDS = len(priors.KINDS)
+_PAIRS_AT_ONCE = 50_000  # of cuts: some 10 MB
 _Reduction = Callable[..., FloatArray]
 
 
@@ -180,18 +181,25 @@ class _Chain:
         of_length = priors.log_lengths(int(self.cuts[-1]), line=line)
         self._is_crossed = is_between(self.cuts, crossed)
         # of each end, the score of every kind from every begin, (b, k)
-        self._inner = [self._score_kinds(end, of_length) for end in range(1, self._n + 1)]
+        self._inner: list[FloatArray] = []
+        # not all at once: lines with many cuts would take much memory
+        per_step = max(1, _PAIRS_AT_ONCE // (self._n + 1))
+        for first in range(1, self._n + 1, per_step):
+            ends = np.arange(first, min(first + per_step, self._n + 1))
+            inner = self._score_kinds(np.repeat(ends, ends), of_length)
+            self._inner += np.split(inner, np.cumsum(ends)[:-1])
 
-    def _score_kinds(self, end: int, of_length: FloatArray) -> FloatArray:
-        of_label = self._score[end] - self._score[:end] + self._labels.log_prior
-        length = self.cuts[end] - self.cuts[:end]
-        inner = np.full((end, _N_KINDS), -np.inf)
+    def _score_kinds(self, end: IntArray, of_length: FloatArray) -> FloatArray:
+        """Return the score (p, k) of each kind from each begin, ends (p,) repeated."""
+        begin = np.arange(len(end)) - np.searchsorted(end, end)
+        of_label = self._score[end] - self._score[begin] + self._labels.log_prior
+        inner = np.full((len(end), _N_KINDS), -np.inf)
         for kind, rows in enumerate(self._rows):
             if len(rows):
                 inner[:, kind] = np.logaddexp.reduce(of_label[:, rows], axis=1)
-        is_between_walls = self._is_crossed[:end] & self._is_crossed[end]
+        is_between_walls = self._is_crossed[begin] & self._is_crossed[end]
         between = np.where(is_between_walls[:, None], priors.log_between_walls(), 0.0)
-        return inner + of_length[:, length - 1].T + between
+        return inner + of_length[:, self.cuts[end] - self.cuts[begin] - 1].T + between
 
     def _forward(self, add: _Reduction) -> tuple[FloatArray, FloatArray]:
         """Return what enters each kind at each cut, and what ended in each there, (b, k)."""
