@@ -17,7 +17,7 @@ from scanplan.recordings.motion import (
     trajectory,
     turn_smear,
 )
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import is_as_recorded, open_survey
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log, witnesses
 from scanplan.store import doubts, schemas, tables
@@ -102,6 +102,7 @@ def interpolate_poses(
         candidates.log_jumps(edges, files[0], max_speed_m_s=max_speed_m_s)
         candidates.require_poses(covered[chosen], t_ns, edges, files[0], max_gap_s=max_gap_s)
         _log_unsteady(is_steady, chosen)
+        as_recorded = is_as_recorded(survey)
     n_covered = int(covered[chosen].sum())
     n_without = len(chosen) - n_covered
     share = n_without / len(chosen)
@@ -115,6 +116,7 @@ def interpolate_poses(
     notes = found.as_notes() | {
         pose_kind.NOTE: survey.pose_kind,
         schemas.N_RECORDED: str(len(t_ns)),
+        schemas.AS_RECORDED: json.dumps(as_recorded),
     }
     tables.write_table(output, schemas.POSES, columns, notes=notes, made_of=made_of)
     log.log_line(

@@ -65,6 +65,21 @@ def test_the_table_says_how_many_scans_were_recorded(run, entries, tmp_path):
     assert tables.read_note(path, schemas.POSES, schemas.N_RECORDED) == "12"
 
 
+@pytest.mark.parametrize(("frame", "expected"), [("lidar", "true"), ("map", "false")])
+def test_the_table_says_whether_stamps_suffice_to_read_scans_again(run, tmp_path, frame, expected):
+    maker = bag_making.Maker()
+    entries = []
+    for i in range(12):
+        t_ns, place = START + i * STEP, np.array([i / 2, 0, 0])
+        seen_from = place if frame == "lidar" else 0
+        points = (bag_making.room_points() - seen_from).astype(np.float32)
+        entries.append(("/amcl_pose", t_ns, maker.amcl(t_ns, place)))
+        entries.append(("/points", t_ns + 1, maker.cloud(t_ns, points, frame=frame)))
+    run(entries)
+    path = tmp_path / "poses.parquet"
+    assert tables.read_note(path, schemas.POSES, schemas.AS_RECORDED) == expected
+
+
 def test_few_clouds_are_read_here_so_that_none_is_too_many_damaged(tmp_path, monkeypatch):
     maker = bag_making.Maker()
     entries = list(bag_making.survey(maker, n_scans=12))

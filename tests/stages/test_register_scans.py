@@ -13,6 +13,7 @@ from scanplan.project import dataset_files
 from scanplan.project.settings import merge_settings
 from scanplan.project.stage_settings import select_section
 from scanplan.project.yaml_file import read_yaml
+from scanplan.recordings import small_messages
 from scanplan.registration import mapping
 from scanplan.registration.candidates.chunk_files import ChunkFiles
 from scanplan.store import doubts, schemas, tables
@@ -93,6 +94,15 @@ def test_retained_scans_lie_in_the_map(run):
     for scan_id, xyz_m in store.scans():
         assert len(xyz_m) == 4000
         assert np.abs(np.sort(xyz_m[:, 0])[[0, -1]] - (0, 6)).max() < 0.03, scan_id
+
+
+def test_poses_and_transforms_are_not_read_again(run, monkeypatch):
+    read, n_read = small_messages.read_small_messages, []
+    monkeypatch.setattr(
+        small_messages, "read_small_messages", lambda *of: n_read.append(1) or read(*of)
+    )
+    run(survey())
+    assert len(n_read) == 1
 
 
 @pytest.mark.parametrize("kind", ["localiser", "odometry"])

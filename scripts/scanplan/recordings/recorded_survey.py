@@ -1,6 +1,6 @@
 """One survey recorded in ROS bags: its clouds, and the chains that place its sensor."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from typing import NamedTuple
@@ -71,6 +71,9 @@ class BagSurvey:
     ----------
     recordings : list of bags.Bag
         Open.
+    known_t_ns : dict of int to int, optional
+        Stamps by scan_id of all scans that are asked for, where they are known to be `as_recorded`:
+        then nothing but clouds is read.
 
     Raises
     ------
@@ -86,7 +89,9 @@ class BagSurvey:
         pose_topic: str | None,
         base_frame: str | None,
         reading: CloudReading,
+        known_t_ns: Mapping[int, int] | None = None,
     ) -> None:
+        self._known_t_ns = known_t_ns
         self._bags = sorted(recordings, key=lambda bag: (bag.start_ns, str(bag.path)))
         self._where = ", ".join(str(bag.path) for bag in self._bags)
         self._topics = topics.merge_topics(
@@ -116,6 +121,11 @@ class BagSurvey:
         if self._cloud.msgtype in topics.LASERS:
             return True
         return clouds.are_scans_planar(self._keep_in_range(scan).xyz_m for scan in self._first)
+
+    @property
+    def as_recorded(self) -> bool:
+        """Whether each scan is one message, its points seen from the sensor."""
+        return not self._is_in_map
 
     @property
     def sweep_times(self) -> point_times.TimeConvention | None:
@@ -374,7 +384,8 @@ class BagSurvey:
 
     def _read_scan(self, cloud: _CloudMessage) -> clouds.Scan:
         scan = self._keep_in_range(self._decode(cloud), self.sweep_times)
-        return replace(scan, t_ns=int(self.stamps()[cloud.scan_id]))
+        t_ns = self.stamps() if self._known_t_ns is None else self._known_t_ns
+        return replace(scan, t_ns=int(t_ns[cloud.scan_id]))
 
     def _decode(self, cloud: _CloudMessage) -> _RawScan:
         bag = cloud.bag
@@ -401,7 +412,9 @@ class BagSurvey:
     @cached_property
     def _is_in_map(self) -> bool:
         """Whether the clouds' points are in the map; asked where they are given in its frame."""
-        if self._pose_source is None or self._cloud.msgtype in topics.LASERS:
+        if self._known_t_ns is not None or self._cloud.msgtype in topics.LASERS:
+            return False
+        if self._pose_source is None:
             return False
         if self._index.sensor_frame != self.map_frame:
             return False

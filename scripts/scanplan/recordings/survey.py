@@ -37,6 +37,7 @@ def open_survey(
     pose_kind: str = FOUND,
     motion: SensorMotion | None = None,
     storey: int | None = None,
+    known_t_ns: Mapping[int, int] | None = None,
 ) -> Iterator[Survey]:
     """Open all recordings of a dataset as one survey.
 
@@ -71,6 +72,8 @@ def open_survey(
         How the sensor moved.
     storey : int, optional
         Which of a merged cloud, 0 the lowest; by default the one with most floor.
+    known_t_ns : dict of int to int, optional
+        Stamps by scan_id of the scans that are asked for, of a survey that is `as_recorded`.
 
     Yields
     ------
@@ -99,8 +102,13 @@ def open_survey(
     with ExitStack() as stack:
         survey = _open_points(files, storey, reading)
         if survey is None:
-            survey = _open_recordings(files, stack, opening, topics_and_frame, reading)
+            survey = _open_recordings(files, stack, opening, topics_and_frame, reading, known_t_ns)
         yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
+
+
+def is_as_recorded(survey: Survey) -> bool:
+    """Return whether scans are messages of bags as they are, which stamps suffice to read again."""
+    return getattr(survey, "as_recorded", False)
 
 
 @contextmanager
@@ -164,6 +172,7 @@ def _open_recordings(
     opening: Mapping[str, Any],
     topics_and_frame: Mapping[str, Any],
     reading: CloudReading,
+    known_t_ns: Mapping[int, int] | None,
 ) -> Survey:
     # rosbags costs a second to import: where it is needed alone
     if dataset_files.is_scan_folder(files):
@@ -188,8 +197,10 @@ def _open_recordings(
     if names is None or isinstance(names, str):
         from scanplan.recordings import nodding_sweeps
 
-        survey = recorded_survey.BagSurvey(opened, **topics_and_frame, reading=reading)
-        return nodding_sweeps.take_nods(survey)
+        survey = recorded_survey.BagSurvey(
+            opened, **topics_and_frame, reading=reading, known_t_ns=known_t_ns
+        )
+        return survey if known_t_ns else nodding_sweeps.take_nods(survey)
     from scanplan.recordings import scanner_drives
 
     surveys = [

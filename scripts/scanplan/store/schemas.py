@@ -52,6 +52,8 @@ POSES = Schema(
 )
 N_RECORDED = "n_recorded"
 """Under this name a table of poses says how many scans were recorded."""
+AS_RECORDED = "as_recorded"
+"""Under this name it says whether each scan is one message of a bag, seen from its sensor."""
 OF_POSES = "of_poses"
 """Under this name a table of motion says whether it is that of the poses, or of others in a map."""
 SMEAR_MM = "smear_mm"

@@ -107,6 +107,20 @@ def read_candidates(poses: FilePath, *, planar: bool) -> CandidateScans:
     return CandidateScans(columns["scan_id"], priors, planar, is_odometry=is_odometry)
 
 
+def read_known_stamps(poses: FilePath) -> dict[int, int] | None:
+    """Return the candidates' stamps by scan_id where these are all that reading them again needs.
+
+    Parameters
+    ----------
+    poses : path-like
+        poses.parquet.
+    """
+    if tables.read_note(poses, schemas.POSES, schemas.AS_RECORDED) != "true":
+        return None
+    columns = tables.read_table(poses, schemas.POSES, ["scan_id", "t_ns"])
+    return dict(zip(columns["scan_id"].tolist(), columns["t_ns"].tolist(), strict=True))
+
+
 def read_settings(poses: FilePath, section: Settings) -> RegistrationSettings:
     """Return the settings of registration as they hold for a survey's kind of poses.
 
@@ -182,7 +196,12 @@ def register_recorded(
         Which batches, see `batches.cut_survey`; by default all.
     """
     motion = None if recorded.moved is None else read_motion(recorded.moved)
-    with open_survey(recorded.recordings, **recorded.reading, motion=motion) as opened:
+    with open_survey(
+        recorded.recordings,
+        **recorded.reading,
+        motion=motion,
+        known_t_ns=read_known_stamps(recorded.poses),
+    ) as opened:
         survey = read_candidates(recorded.poses, planar=opened.planar)
         n_candidates = len(survey.scan_ids)
         cut = batches.cut_survey(n_candidates, settings, chunk)
