@@ -10,6 +10,7 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.pieces import Piece
 from scanplan.plan.plan_wall import PlanWall
+from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.store.schemas import COLUMN, PIECE
 
 WALLS = [box(0, 4, 6, 4.1)]
@@ -78,6 +79,15 @@ def test_a_side_that_one_return_shows_of_many_is_where_that_lies():
 
 def test_two_scans_may_both_have_something_above():
     assert tell(box(2.8, 1.8, 3.2, 2.2), sensors=SENSORS[:2]).kind == PIECE
+
+
+@pytest.mark.parametrize("away_m", [(3.0, 0.4), (2.9, 2.1), (2.6, 2.0), (-2.0, 2.0)])
+def test_a_column_is_seen_alike_from_beside_within_and_across_the_turn_of_azimuth(away_m):
+    square = box(2.8, 1.8, 3.2, 2.2)
+    sensors = [(*away_m, 1), (*away_m, 1.1), (*away_m, 1.2), (5.5, 3.5, 1)]
+    told = tell(square, sensors=sensors)
+    assert told.kind == COLUMN and told.n_scans == 4
+    assert told.n_points == 4 * (returns(square)[:, 2] > SKIRTING_M).sum()
 
 
 def test_planar_scans_know_no_columns():

@@ -55,6 +55,16 @@ def spans(stretches):
     return [(s.kind, round(s.low_m, 6), round(s.high_m, 6)) for s in stretches]
 
 
+def test_stretches_are_scored_alike_in_any_steps(monkeypatch):
+    ends = wall(4)
+    put(ends, (1, 1.9), (0, 2.1), {(SQUARE, BEYOND): 3.0})
+    at_once = label(ends)
+    monkeypatch.setattr(line_labels, "_PAIRS_AT_ONCE", 1)
+    one_by_one = label(ends)
+    assert spans(one_by_one) == spans(at_once) and len(at_once) > 1
+    assert [s.p for s in one_by_one] == [s.p for s in at_once]
+
+
 class TestByHand:
     def test_a_wall_with_a_hole_under_a_lintel_has_a_door(self):
         ends = wall(4)
