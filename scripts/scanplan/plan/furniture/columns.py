@@ -139,8 +139,8 @@ def _tell(
 def _returns_above(outline: Polygon, rays: RaySet) -> tuple[FloatArray, IntArray]:
     """Return the returns (n, 3) over an outline, heights above the floor, and their scans (n,)."""
     # no return on an edge is to be missed by rounding
-    box = outline.envelope.buffer(SHORTEST_M, join_style="mitre")
-    corners_m = shapely.get_coordinates(box)[:-1]
+    low_m, high_m = shapely.bounds(outline).reshape(2, 2) + np.array([[-SHORTEST_M], [SHORTEST_M]])
+    corners_m = shapely.get_coordinates(shapely.box(*low_m, *high_m))[:-1]
     way_m = corners_m - rays.sensors_m[:, None, :2]
     middle_m = way_m.mean(axis=1)[:, None]
     ahead = (middle_m * way_m).sum(axis=2)
