@@ -1,28 +1,30 @@
 """Models and drawings of surveys, read back, beside the models that were driven through."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import ifcopenshell
 import numpy as np
 import shapely
-from ezdxf.entities.dxfentity import DXFEntity
-from ezdxf.entities.insert import Insert
-from ezdxf.entities.lwpolyline import LWPolyline
-from ezdxf.filemanagement import readfile
-from ifcopenshell import entity_instance
-from ifcopenshell.util.element import get_pset
 
 from scanplan.design import design_reading
 from scanplan.design.drawn_storey import DrawnStorey
-from scanplan.exports.dxf_document import APPLICATION
+from scanplan.edited.dxf_reading import read_dxf
+from scanplan.edited.elements import Drawing, Element
+from scanplan.edited.ifc_reading import read_ifc
+from scanplan.exports.sheet.openings import list_symbols
+from scanplan.geometry.lines import left_normals
+from scanplan.plan import floorplan, floorplan_files
+from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.store import schemas, tables
+from scanplan.types import FloatArray
 
 _FILES = ("plan.ifc", "presentation.ifc", "plan.dxf", "presentation.dxf")
 _LEAST_M = 0.5  # a shorter wall is a jamb or a pier, and no type
-_PER_M = {4: 1000.0, 6: 1.0}  # by the units of DXF: millimetres, metres
-_APPLICATION_CODE = 1001  # of extended data: whose they are
+_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture")
+_Lines = dict[tuple[str, int], FloatArray | None]
+_Elements = dict[tuple[str, int], Element]
 
 
 def bench(results: Path, models: Path, surveys: Sequence[str]) -> None:
@@ -98,87 +100,70 @@ def _print_row(
 
 
 def _print_round_trip(name: str, plan: Path) -> None:
-    """Print how many elements of the tables the measured plan's files have, and what is off."""
-    elements = {
-        "wall": _read_sizes(plan, "walls", schemas.PLAN_WALLS, "wall"),
-        "opening": _read_sizes(plan, "openings", schemas.OPENINGS, "opening"),
-        "room": _read_sizes(plan, "rooms", schemas.ROOMS, "room"),
-    }
-    for file, read in (("plan.ifc", _read_ifc), ("plan.dxf", _read_dxf)):
-        found = read(plan / file)
-        said = []
-        for table, sizes in elements.items():
-            both = sizes.keys() & found[table].keys()
-            off = max((abs(sizes[number] - found[table][number]) for number in both), default=0.0)
-            said.append(f"{len(both)} of {len(sizes)} {table}s, off by at most {off:.4f}")
-        print(f"{name}: {file} read back: {'; '.join(said)}", flush=True)
+    """Print how many elements files have of what they are made of, and how far lines are off.
+
+    Lines of walls and openings, across, to the middle of walls as they are drawn; what reaches into
+    corners does so along. Regular files are held against their model.
+    """
+    measured = _read_lines(plan)
+    regular = _key_by_number(plan / "presentation.ifc", read_ifc)
+    for file, read in (("plan.ifc", read_ifc), ("plan.dxf", read_dxf)):
+        _print_found(f"{name}: {file}", measured, _key_by_number(plan / file, read))
+    drawn = _key_by_number(plan / "presentation.dxf", read_dxf)
+    lines = {key: element.line_m for key, element in regular.items()}
+    _print_found(f"{name}: presentation.dxf", lines, drawn)
 
 
-def _read_sizes(plan: Path, table: str, schema: schemas.Schema, key: str) -> dict[int, float]:
-    """Return lengths of walls, widths of openings in walls and areas of rooms by number."""
+def _print_found(title: str, expected: _Lines, found: _Elements) -> None:
+    said = []
+    for kind in ("wall", "opening", "room"):
+        keys = [key for key in expected if key[0] == kind]
+        both = [key for key in keys if key in found]
+        extra = sum(key[0] == kind and key not in expected for key in found)
+        off_m = [_across(expected[key], found[key]) for key in both]
+        far = f", off by at most {1000 * max(off_m, default=0.0):.2f} mm" if kind != "room" else ""
+        said.append(f"{len(both)} of {len(keys)} {kind}s and {extra} more{far}")
+    print(f"{title} read back: {'; '.join(said)}", flush=True)
+
+
+def _across(expected_m: FloatArray | None, element: Element) -> float:
+    """Return how far a line is off another, across; 0 of curved walls, read as a whole."""
+    if expected_m is None or element.line_m is None or element.is_bent:
+        return 0.0
+    return float(np.abs((element.line_m - expected_m[0]) @ left_normals(expected_m[None])[0]).max())
+
+
+def _read_lines(plan: Path) -> _Lines:
+    """Return the lines of a plan's elements, in the middle of walls as they are drawn."""
     folder = plan / "corrected" if (plan / "corrected/walls.parquet").is_file() else plan
-    columns = tables.read_table(folder / f"{table}.parquet", schema, allow_empty=True)
-    if key == "room":
-        sizes = shapely.area(shapely.from_wkb(columns["geometry"]))
-    else:
-        sizes = np.hypot(*(columns[f"{axis}1_m"] - columns[f"{axis}0_m"] for axis in ("x", "y")))
-    is_wanted = np.ones(len(sizes), bool)
-    if key == "opening":
-        is_wanted = np.isin(columns["type"], ("door", "window"))
-    if key == "wall":
-        is_wanted = ~np.isfinite(columns["arc_radius_m"])
-    numbers = columns[key][is_wanted].tolist()
-    return dict(zip(numbers, sizes[is_wanted].tolist(), strict=True))
+    found = scale_floorplan(
+        floorplan_files.read_floorplan(
+            {table: folder / f"{table}.parquet" for table in _TABLES}, plan.parent.name
+        )
+    )
+    left_m, right_m = found.sides_m
+    walls_m = floorplan.centrelines_m(found.walls)
+    walls_m += ((left_m - right_m) / 2)[:, None, None] * left_normals(walls_m)[:, None]
+    openings_m = [symbol.axis_m for symbol in list_symbols(found)]
+    lines: _Lines = {("room", int(number)): None for number in found.rooms["room"]}
+    for kind, columns, of_m in (
+        ("wall", found.walls, walls_m),
+        ("opening", found.openings, openings_m),
+    ):
+        lines |= {(kind, int(n)): line_m for n, line_m in zip(columns[kind], of_m, strict=True)}
+    return lines
 
 
-def _read_ifc(path: Path) -> dict[str, dict[int, float]]:
-    """Return the same of a model: by its quantities, and the widths of doors and windows."""
-    model = ifcopenshell.open(path)
+def _key_by_number(file: Path, read: Callable[[Path], Drawing]) -> _Elements:
+    """Return the elements of a file by kind and number in tables."""
+    drawing = read(file)
+    model = ifcopenshell.open(file) if file.suffix == ".ifc" else None
 
-    def measure(ifc_class: str, quantities: str, name: str) -> Iterator[tuple[str, float]]:
-        for element in model.by_type(ifc_class):
-            assert isinstance(element, entity_instance)
-            found = get_pset(element, quantities, name)
-            assert isinstance(found, float)
-            number = element.Name if ifc_class == "IfcSpace" else element.Tag
-            yield number, found
+    def number_of(element: Element) -> int:
+        if model is None:
+            return int(element.key)
+        product = model.by_guid(element.key)
+        return int(product.Name if element.kind == "room" else product.Tag)
 
-    def number(sizes: Iterable[tuple[str, float]]) -> dict[int, float]:
-        return {int(of): size for of, size in sizes}
-
-    doors = measure("IfcDoor", "Qto_DoorBaseQuantities", "Width")
-    windows = measure("IfcWindow", "Qto_WindowBaseQuantities", "Width")
-    return {
-        "wall": number(measure("IfcWall", "Qto_WallBaseQuantities", "Length")),
-        "opening": number([*doors, *windows]),
-        "room": number(measure("IfcSpace", "Qto_SpaceBaseQuantities", "NetFloorArea")),
-    }
-
-
-def _read_dxf(path: Path) -> dict[str, dict[int, float]]:
-    """Return the same of a drawing: its lines, blocks and outlines, by their extended data."""
-    document = readfile(path)
-    per_m = _PER_M[document.units]
-    found: dict[str, dict[int, float]] = {"wall": {}, "opening": {}, "room": {}}
-    for entity in document.modelspace():
-        facts = _read_facts(entity)
-        layer = entity.dxf.layer
-        if isinstance(entity, Insert) and "opening" in facts:
-            found["opening"][facts["opening"]] = entity.dxf.xscale / per_m
-        if not isinstance(entity, LWPolyline):
-            continue
-        corners_m = np.array([point[:2] for point in entity.get_points("xy")]) / per_m
-        if layer == "A-WALL-CNTR" and "wall" in facts:
-            found["wall"][facts["wall"]] = float(np.hypot(*np.diff(corners_m, axis=0).T).sum())
-        elif layer.startswith("A-AREA") and "room" in facts:
-            area_m2 = shapely.Polygon(corners_m).area
-            found["room"][facts["room"]] = max(area_m2, found["room"].get(facts["room"], 0.0))
-    return found
-
-
-def _read_facts(entity: DXFEntity) -> dict[str, int]:
-    if not entity.has_xdata(APPLICATION):
-        return {}
-    values = [tag.value for tag in entity.get_xdata(APPLICATION) if tag.code != _APPLICATION_CODE]
-    pairs = zip(values[::2], values[1::2], strict=True)
-    return {name: value for name, value in pairs if name in ("wall", "opening", "room")}
+    of = [element for element in drawing.elements if element.kind != "furniture"]
+    return {(element.kind, number_of(element)): element for element in of}

@@ -122,7 +122,10 @@ def part(kind, ground, guid, *, host="", fills="", heights_m=(0.0, 2.6)):
     triangles_m = prism(ground, *heights_m)
     along, clear = np.array([1.0, 0.0]), np.zeros(len(triangles_m), bool)
     ifc_class = {"wall": "IfcWall", "opening": "IfcOpeningElement"}[kind]
-    return IfcPart(kind, ifc_class, guid, fills, "", host, guid, along, triangles_m, clear)
+    return IfcPart(
+        *(kind, ifc_class, guid, fills, "", host, guid),
+        *(along, False, triangles_m, clear),
+    )
 
 
 def test_a_curved_wall_of_a_model_has_an_arc_and_its_door_lies_on_it():

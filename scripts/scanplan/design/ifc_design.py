@@ -1,6 +1,7 @@
 """The storeys of a design in IFC."""
 
-from collections.abc import Iterator, Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import shapely
@@ -24,9 +25,13 @@ from scanplan.types import FloatArray
 _LEAST_HIGH_M = 0.5  # of a wall: a lower one is a plinth or a kerb
 _LOW_M, _HIGH_M = 0.3, 2.0  # above the floor: what reaches in between stands in a storey
 _LEAST_STOREY_M = 1.0  # to the next floor: a level that is nearer is one of the same storey
-_STRAIGHT = 0.9  # of the rectangle around a wall's ground: mitres and gables leave out as much
+_STRAIGHT = 0.9  # of the rectangle between a wall's sides: mitres leave out, or add, as much
 _SILL_M = 0.05  # a hole that begins lower can be gone through
 _GLASS_M = 0.3  # a window that begins lower is a pane down to the floor to whoever scans it
+_FILLINGS = {"door": "door", "glass": "window"}
+"""What parts are that are in no hole."""
+_SIDES = 2  # of a wall
+_SIDE_DECIMALS = 3  # of where a side lies: parts of it lie within a millimetre
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre
 _LEAST_M2 = 1e-4  # of a triangle seen from above: an upright one has nothing
 
@@ -44,6 +49,10 @@ def _draw_storey(model: IfcBuilding, row: int) -> DrawnStorey:
     top_m = max((solid.high_m for solid in within.values()), default=0.0)
     height_m = min(above_m, default=top_m)
     parts = [p for p in model.parts if _is_within(within[p.guid], height_m)]
+    holes: dict[str, list[BaseGeometry]] = defaultdict(list)
+    for part in parts:
+        if part.kind == "opening":
+            holes[part.host].append(within[part.guid].ground)
     walls: list[DrawnWall] = []
     columns: list[DrawnColumn] = []
     others: list[Solid] = []
@@ -51,7 +60,7 @@ def _draw_storey(model: IfcBuilding, row: int) -> DrawnStorey:
         solid = within[part.guid]
         if part.kind != "wall" or solid.ground.is_empty:
             continue
-        wall = _draw_wall(part, solid)
+        wall = _draw_wall(part, solid, holes[part.guid])
         if part.ifc_class.startswith("IfcColumn"):
             columns.append(DrawnColumn(part.guid, part.name, solid))
         elif wall is not None:
@@ -89,14 +98,23 @@ def _is_within(solid: Solid, height_m: float) -> bool:
     return reach_m > 0 and solid.high_m > _LEAST_HIGH_M
 
 
-def _draw_wall(part: IfcPart, solid: Solid) -> DrawnWall | None:
-    """Return a wall along its own axis, or its arc; None of one that has corners."""
+def _draw_wall(part: IfcPart, solid: Solid, holes: Sequence[BaseGeometry]) -> DrawnWall | None:
+    """Return a wall along its own axis, or its arc; None of one that has corners.
+
+    Where a hole is as high as the wall, nothing of its ground is left.
+    """
     line_m, thickness_m = _middle(part.along, solid.ground)
     length_m = float(np.hypot(*(line_m[1] - line_m[0])))
-    if length_m <= thickness_m:
+    if length_m <= thickness_m and not part.has_axis:
         line_m, thickness_m = _middle(np.array([-part.along[1], part.along[0]]), solid.ground)
         length_m = float(np.hypot(*(line_m[1] - line_m[0])))
-    if solid.ground.area < _STRAIGHT * length_m * thickness_m:
+    middle = shapely.LineString(line_m)
+    strip = overlays.buffer_shapes(middle, thickness_m / 2, cap_style="flat")
+    filled = overlays.unite_areas(
+        [solid.ground, *overlays.intersect_areas(np.array(holes, object), strip)]
+    )
+    share = filled.area / (length_m * thickness_m)
+    if not _STRAIGHT <= share <= 1 / _STRAIGHT:
         curved = find_curved_ground(solid.ground)
         if len(curved) != 1 or curved[0].ground.area < _STRAIGHT * solid.ground.area:
             return None
@@ -106,32 +124,66 @@ def _draw_wall(part: IfcPart, solid: Solid) -> DrawnWall | None:
 
 
 def _middle(along: FloatArray, ground: BaseGeometry) -> tuple[FloatArray, float]:
-    """Return the middle line (2, 2) of some ground in a direction, and its width."""
+    """Return the middle line (2, 2) of some ground in a direction, and its width.
+
+    From side to side: a spur of a mitre is no part of its width.
+    """
     across = np.array([-along[1], along[0]])
     corners_m = shapely.get_coordinates(ground)
-    along_m, across_m = corners_m @ along, corners_m @ across
-    middle_m = (across_m.min() + across_m.max()) / 2
+    along_m = corners_m @ along
+    low_m, high_m = _find_sides(along, across, ground)
     ends_m = np.array([along_m.min(), along_m.max()])
-    return ends_m[:, None] * along + middle_m * across, float(np.ptp(across_m))
+    return ends_m[:, None] * along + (low_m + high_m) / 2 * across, high_m - low_m
+
+
+def _find_sides(along: FloatArray, across: FloatArray, ground: BaseGeometry) -> tuple[float, float]:
+    """Return where across a direction the first and the last side of some ground lie."""
+    off_m = shapely.get_coordinates(ground) @ across
+    rings_m = [shapely.get_coordinates(r) for r in shapely.get_rings(shapely.get_parts(ground))]
+    starts_m = np.concatenate([ring_m[:-1] for ring_m in rings_m])
+    steps_m = np.concatenate([np.diff(ring_m, axis=0) for ring_m in rings_m])
+    is_side = np.abs(steps_m @ across) <= _GRID_M
+    sides_m, lengths_m = (
+        ((starts_m + steps_m / 2) @ across)[is_side],
+        np.abs(steps_m @ along)[is_side],
+    )
+    _, of = np.unique(sides_m.round(_SIDE_DECIMALS), return_inverse=True)
+    total_m = np.bincount(of, lengths_m)
+    at_m = np.bincount(of, lengths_m * sides_m) / total_m
+    long = at_m[total_m >= total_m.max(initial=0.0) / 2]
+    if len(long) < _SIDES:
+        return float(off_m.min()), float(off_m.max())
+    return float(long.min()), float(long.max())
 
 
 def _draw_opening(
     part: IfcPart, solid: Solid, walls: list[DrawnWall], rows: Mapping[str, int]
 ) -> DrawnOpening:
-    wall = walls[rows[part.host]]
-    line_m = _find_jambs(wall, shapely.get_coordinates(solid.ground))
-    empty = "passage" if solid.low_m < _SILL_M else "window"
-    kind = part.fills or empty
-    kind = "glass" if kind == "window" and solid.low_m < _GLASS_M else kind
-    return DrawnOpening(
-        part.filler or part.guid,
-        part.name,
-        rows[part.host],
-        line_m,
-        kind,
-        max(solid.low_m, 0.0),
-        solid.high_m,
-    )
+    wall = rows[part.host]
+    line_m = _find_jambs(walls[wall], shapely.get_coordinates(solid.ground))
+    return describe_opening(part, line_m, (solid.low_m, solid.high_m), wall)
+
+
+def describe_opening(
+    part: IfcPart, line_m: FloatArray, extent_m: tuple[float, float], wall: int = -1
+) -> DrawnOpening:
+    """Return a hole, a door or a window as an opening.
+
+    Parameters
+    ----------
+    line_m : (2, 2) float
+        From jamb to jamb.
+    extent_m : (float, float)
+        From where to where above the floor it reaches.
+    wall : int
+        Row of its wall, -1 if it is in none.
+    """
+    low_m, high_m = extent_m
+    empty = "passage" if low_m < _SILL_M else "window"
+    kind = part.fills or _FILLINGS.get(part.kind, empty)
+    kind = "glass" if kind == "window" and low_m < _GLASS_M else kind
+    guid = part.filler or part.guid
+    return DrawnOpening(guid, part.name, wall, line_m, kind, max(low_m, 0.0), high_m)
 
 
 def _find_jambs(wall: DrawnWall, corners_m: FloatArray) -> FloatArray:

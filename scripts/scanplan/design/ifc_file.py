@@ -57,6 +57,8 @@ class IfcPart:
     along : (2,) float64
         Unit vector of its own x axis seen from above: by IFC's convention the direction that a
         wall runs in.
+    has_axis : bool
+        Whether it states the line that it runs along.
     triangles_m : (t, 3, 3) float64
         World frame.
     transparent : (t,) bool
@@ -70,6 +72,7 @@ class IfcPart:
     host: str
     guid: str
     along: FloatArray
+    has_axis: bool
     triangles_m: FloatArray
     transparent: BoolArray
 
@@ -200,6 +203,10 @@ def _part(product: Any, geometry: Any) -> IfcPart:
         host=_host(product),
         guid=product.GlobalId,
         along=x_axis / length if length > 0 else np.array([1.0, 0.0]),
+        has_axis=any(
+            shape.RepresentationIdentifier == "Axis"
+            for shape in product.Representation.Representations
+        ),
         triangles_m=corners_m[faces],
         transparent=np.array([*is_clear, False])[material],
     )

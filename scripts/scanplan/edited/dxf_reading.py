@@ -6,7 +6,7 @@ sides enclose is compared as well (`side_strips`).
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,12 +23,16 @@ from ezdxf.units import conversion_factor
 from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
-from scanplan.exports.dxf_document import APPLICATION, STAMP
+from scanplan.exports.dxf_document import APPLICATION, STAMP, WALL_FACT
 from scanplan.project import user_file
 from scanplan.types import FilePath, FloatArray
 
 KINDS = {
     "DOOR": "door",
+    # of releases before
+    "DOOR-1": "door",
+    "DOOR-2": "door",
+    "DOORWAY": "door",
     "SWING-LEFT": "door",
     "SWING-RIGHT": "door",
     "SWING-2": "door",
@@ -41,6 +45,7 @@ KINDS = {
 }
 """Openings by the blocks that they are drawn with."""
 _HINGES = {"SWING-LEFT": 0, "SWING-RIGHT": 1, "SWING-2": 0}
+"""At which end of its line a leaf hangs, in the side of the wall that it opens to."""
 _OURS = (
     *("LWPOLYLINE", "HATCH", "INSERT", "DIMENSION", "TEXT", "MTEXT", "LINE", "ARC", "POLYLINE"),
     *("VIEWPORT", "GEODATA"),
@@ -62,7 +67,7 @@ def read_dxf(path: FilePath) -> Drawing:
             fault = f"states no unit ($INSUNITS is {document.units})"
             raise StageError(f"{path}: {fault}; export it in metres")
         per_unit_m = conversion_factor(InsertUnits(document.units), InsertUnits.Meters)
-        elements = [*_list_elements(document, per_unit_m)]
+        elements = _leave_holes([*_list_elements(document, per_unit_m)])
     except (OSError, DXFError, ValueError, ArithmeticError) as error:
         fault = f"cannot be read as DXF ({str(error).strip()[:120]})"
         raise StageError(f"{path}: {fault}; export it again") from None
@@ -96,6 +101,18 @@ def _list_elements(document: Document, per_unit_m: float) -> Iterator[Element]:
                 yield Element("wall", str(facts["wall"]), line_m, is_bent=is_bent)
 
 
+def _leave_holes(elements: Sequence[Element]) -> list[Element]:
+    """Return elements without the holes of outlines, which are outlines of the same piece."""
+    outer: dict[str, Element] = {}
+    for element in elements:
+        if element.outline is not None:
+            known = outer.setdefault(element.key, element)
+            assert known.outline is not None
+            if element.outline.area > known.outline.area:
+                outer[element.key] = element
+    return [of for of in elements if of.outline is None or outer[of.key] is of]
+
+
 def read_facts(entity: Any) -> dict[str, Any]:
     """Return what the extended data of an entity say: values by names."""
     if not entity.has_xdata(APPLICATION):
@@ -114,6 +131,7 @@ def _read_opening(insert: Insert, facts: dict[str, Any], per_unit_m: float) -> E
     said: dict[str, Any] = {"kind": KINDS.get(name, name.casefold())}
     if name in _HINGES:
         left = np.array([-way[1], way[0]]) * math.copysign(1.0, insert.dxf.yscale)
+        line_m = line_m - facts.get(WALL_FACT, 0.0) / 2 * left
         said["opens_m"] = line_m[_HINGES[name]] + abs(width_m) * left
     key = str(facts.get("opening", insert.dxf.handle))
     return Element("opening", key, line_m, facts=said)

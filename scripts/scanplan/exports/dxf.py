@@ -131,7 +131,7 @@ class _Plan:
         middle = self._point(symbol.ends_m.mean(axis=0))
         for tag, fact in dxf_document.SYMBOL_TAGS.items():
             self._add_attribute(insert, tag, _format_fact(facts.get(fact)), middle, "A-ANNO-TEXT")
-        _attach_facts(insert, symbol.facts)
+        _attach_facts(insert, {**symbol.facts, dxf_document.WALL_FACT: symbol.thickness_m})
         for kind in symbol.surrounded_by:
             around = surround_symbol(self._page, symbol) * self._scale.per_m
             drawn = {"layer": doubt_layer(layer) if kind == "verify" else STYLES[kind].layer}

@@ -19,6 +19,8 @@ from scanplan.exports.sheet.symbols import BLOCKS
 
 APPLICATION = "SCANPLAN"
 """Of extended data: pairs of a column's name and its value."""
+WALL_FACT = "wall_m"
+"""Of the extended data of an opening: how thick its wall is drawn."""
 DIMENSIONS = "SCANPLAN"
 """The style of dimensions."""
 TEXT_STYLE = "SCANPLAN"

@@ -204,12 +204,14 @@ class IfcModel:
 
         `symbol` has the curves that it is drawn with in plan, of an editable model.
         """
-        bodies = self.new("IfcShapeRepresentation", self.body, "Body", "SweptSolid", solids)
-        shapes = [bodies]
+        shapes: list[entity_instance] = []
         if axis is not None:
             line = self.polyline(axis) if curve is None else curve
-            along = self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line])
-            shapes = [along, bodies]
+            shapes.append(self.new("IfcShapeRepresentation", self.axis, "Axis", "Curve2D", [line]))
+        if solids:
+            shapes.append(
+                self.new("IfcShapeRepresentation", self.body, "Body", "SweptSolid", solids)
+            )
         if self.footprint is not None and symbol:
             drawn = [self.new("IfcGeometricCurveSet", symbol)]
             shapes.append(

@@ -159,7 +159,7 @@ def _add_boundary(
     *,
     is_external: bool,
 ) -> None:
-    is_virtual = element.is_a("IfcOpeningElement")
+    is_virtual = any(map(element.is_a, ("IfcOpeningElement", "IfcVirtualElement")))
     model.file.create_entity(
         "IfcRelSpaceBoundary",
         **model.rooted("IfcRelSpaceBoundary", space, element),

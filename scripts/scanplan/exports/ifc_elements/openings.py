@@ -1,7 +1,7 @@
 """Openings of a building model, and the doors and windows in them."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -47,7 +47,8 @@ class Opening:
     void : entity or None
         The IfcOpeningElement in its wall; None if it is in none.
     filling : entity or None
-        The door or window; None of a passage.
+        What stands in the storey: the door or window; of a passage in no wall an IfcVirtualElement,
+        None of one in a wall.
     """
 
     void: entity_instance | None
@@ -82,6 +83,7 @@ def _add_opening(
     attributes = {
         "Name": _name_opening(storey, row),
         "Tag": str(plan.openings["opening"][row]),
+        "ObjectType": str(kind),
         "ObjectPlacement": frame.placement(model),
     }
     global_id = storey.ids["opening"][row]
@@ -100,7 +102,9 @@ def _add_opening(
         depth_m = float(shapely.area(cut)) / frame.length_m
         _measure_void(model, void, frame.length_m, extent_m, depth_m)
     if kind not in _FILLED_BY:
-        return Opening(void, None)
+        if void is not None:
+            return Opening(void, None)
+        return Opening(None, _add_bound(model, storey, row, frame, attributes))
     colour = colour_of(plan.openings, row, kind)
     if model.is_editable:
         attributes["PredefinedType"] = "DOOR" if kind == "door" else "WINDOW"
@@ -148,6 +152,18 @@ def _add_void(
     void = model.known("IfcOpeningElement", global_id, PredefinedType="OPENING", **attributes)
     void.Representation = model.shape([model.prism(gap, *extent_m)])
     return void
+
+
+def _add_bound(
+    model: IfcModel, storey: StoreyPlan, row: int, frame: Frame, attributes: Mapping[str, Any]
+) -> entity_instance:
+    """Add where rooms end and nothing stands: a line."""
+    global_id = storey.ids["opening"][row]
+    bound = model.known("IfcVirtualElement", global_id, **attributes)
+    line_m = np.array([(0.0, 0.0), (frame.length_m, 0.0)])
+    bound.Representation = model.shape([], line_m)
+    _describe_opening(model, storey, row, bound)
+    return bound
 
 
 def _add_filling(
@@ -251,7 +267,7 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
     fillings_of = defaultdict(list)
     for kind, opening in zip(kinds, openings, strict=True):
         filling = opening.filling
-        if filling is not None:
+        if filling is not None and kind in _FILLED_BY:
             name, width_m = storey.name_type(_LISTED_AS.get(kind, ""), filling.OverallWidth)
             operation = (filling.OperationType if kind == "door" else None) or "NOTDEFINED"
             fillings_of[kind, width_m, operation, name].append(filling)

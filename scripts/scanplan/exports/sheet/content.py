@@ -123,11 +123,16 @@ def draw_surfaces(plan: FloorPlan) -> Iterator[Mark]:
 
 
 def draw_axes(plan: FloorPlan) -> Iterator[Mark]:
-    """Yield the line of each wall, with what is known of it: not on paper, for CAD."""
-    for row, axis in enumerate(plan.axes):
+    """Yield the middle of each wall as it is drawn, with what is known of it: for CAD alone.
+
+    Of a curved wall that one side was seen of it is that side.
+    """
+    left_m, right_m = plan.sides_m
+    aside_m = np.where(plan.wall_shapes.is_bent, 0.0, (left_m - right_m) / 2)
+    for row, off_m in enumerate(aside_m.tolist()):
         number = plan.walls["wall"][row]
         facts = facts_of("wall", plan.walls, row)
-        path = straight(shapely.get_coordinates(axis))
+        path = straight(plan.wall_shapes.trace(row, off_m))
         yield Mark("axis", [path], element=f"wall-{number}", facts=facts, circles_m=plan.circles_m)
 
 
