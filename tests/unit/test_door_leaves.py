@@ -7,6 +7,7 @@ import shapely
 from helpers import floorplan_making
 from scanplan.exports.sheet.leaves import Leaves, draw_swing, find_leaves
 from scanplan.exports.sheet.marks import Symbol, flatten
+from scanplan.exports.sheet.openings import draw_things, list_symbols
 from scanplan.exports.sheet.symbols import symbol_paths
 
 # a wall of 0.2 m along y = 0, a door from x = 1 to 2
@@ -60,6 +61,32 @@ def test_a_wide_door_has_two_leaves():
 )
 def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
     assert draw_swing(DOOR, seen) is DOOR
+
+
+@pytest.mark.parametrize(
+    ("outline", "kind", "is_drawn"),
+    [
+        # the door between the rooms is 0.9 m wide, from y = 1 to 1.9; its leaf stands in the east
+        (shapely.box(4.1, 0.98, 4.98, 1.02), "leaf", False),
+        (shapely.Polygon([(4.1, 1.0), (4.8, 1.6), (4.78, 1.63), (4.08, 1.03)]), "leaf", False),
+        (shapely.box(4.2, 0.97, 4.9, 1.04), "furniture", False),
+        (shapely.box(4.4, 1.3, 4.8, 1.6), "furniture", True),
+        (shapely.box(5.5, 0.98, 6.4, 1.02), "leaf", True),
+        (shapely.box(4.2, 0.97, 4.9, 1.04), "column", True),
+    ],
+)
+def test_what_a_swing_shows_is_not_drawn_once_more(outline, kind, is_drawn):
+    hung = shapely.box(4.1, 0.98, 4.98, 1.02)
+    columns = floorplan_making.furniture([hung, outline], "leaf")
+    columns["kind"][1] = kind
+    plan = floorplan_making.plan(furniture=columns)
+    symbols = list_symbols(plan)
+    assert [symbol.kind for symbol in symbols] == ["door", "swing", "window"]
+    drawn = [mark.facts["furniture"] for mark in draw_things(plan, symbols)]
+    assert drawn == [columns["furniture"][1]] * is_drawn
+    # without a leaf that stands at the door all is drawn
+    shut = floorplan_making.furniture([outline], "furniture")
+    assert len([*draw_things(floorplan_making.plan(furniture=shut), symbols[:1])]) == 1
 
 
 def test_leaves_are_middle_lines_of_their_outlines():

@@ -54,6 +54,14 @@ def test_every_step_adds_what_it_found(made, tmp_path):
     assert 'class="segments"' not in drawn["svg"] and 'class="room"' in drawn["svg"]
 
 
+def test_walls_are_as_thick_as_sheets_assume_them(made, tmp_path):
+    put(made, tmp_path, "plan/walls.parquet")
+    usual = draw_growing_plan(tmp_path)["svg"]
+    thick = json.loads(growing.draw(tmp_path, {"assumed_thickness_m": 0.3}))["svg"]
+    # the east wall was seen from inside, at 7.1
+    assert "7.2 " in usual and "7.2 " not in thick and "7.4 " in thick
+
+
 def test_the_way_is_where_scans_were_registered(made, tmp_path):
     put(made, tmp_path, "poses.parquet")
     recorded = draw_growing_plan(tmp_path)["svg"]
@@ -75,12 +83,12 @@ def test_a_damaged_file_is_told_by_a_process_that_ends(made, tmp_path):
     put(made, tmp_path, "poses.parquet")
     (tmp_path / "poses.parquet").write_bytes(b"PAR1")
     with refused(file="poses.parquet"):
-        growing.draw(tmp_path)
+        growing.draw(tmp_path, {})
 
 
 def test_pictures_and_points_come_from_processes_of_this_package(made, tmp_path):
     report_making.written(tmp_path, report_making.files(tmp_path), name="office")
-    assert json.loads(growing.draw(tmp_path))["said"]
+    assert json.loads(growing.draw(tmp_path, {}))["said"]
     content = b"".join(growing.send_points(tmp_path))
     n_head = int.from_bytes(content[:4], "little")
     # 12 points of three times two bytes

@@ -74,13 +74,18 @@ def test_what_a_run_writes_is_what_its_page_reads(tmp_path):
     path = tmp_path / "status.json"
     assert read_status(path) == RunStatus()
     file = StatusFile({STATUS: str(path)})
+    file.assume({"mine": {"assumed_thickness_m": 0.3}})
     file.begin(WANTED)
     file.tell([stage("read", 1.0, "1/9"), stage("order")])
     file.end(stage("read", 2.0, "9"), is_failed=False)
     file.end(stage("order"), is_failed=True)
     file.tell([stage("register")])
     assert read_status(path) == RunStatus(
-        WANTED, [stage("read", 2.0, "9")], [stage("register")], [stage("order")]
+        WANTED,
+        [stage("read", 2.0, "9")],
+        [stage("register")],
+        [stage("order")],
+        {"mine": {"assumed_thickness_m": 0.3}},
     )
     path.write_text("{")
     assert read_status(path) == RunStatus()

@@ -127,6 +127,12 @@ if not IS_MODULE:
     run_lock.tell_locked(PersistenceBase, LockException, or_end)
 if is_to_be_told():
     CONSOLE.take_over(logging.getLogger("snakemake.logging"), tell_results)
+    CONSOLE.tell_assumed(
+        {
+            name: stage_settings.select_assumed(found.settings)
+            for name, found in GIVEN.items()
+        }
+    )
 
 
 def benchmarks_of(name):

@@ -170,6 +170,12 @@ def select_presentation(settings: Settings) -> Keywords:
     return _without(select_drawing(settings), ("map_cell_m",)) | own
 
 
+def select_assumed(settings: Settings) -> Keywords:
+    """Return what drawings assume where it was not seen."""
+    export = select_section(settings, "plan", "export")
+    return {key: export[key] for key in _ASSUMED}
+
+
 def select_design(settings: Settings) -> Keywords:
     """Return the settings of `compare_design`: four of drawings, and the design's storey."""
     export = select_section(settings, "plan", "export")

@@ -1,12 +1,14 @@
 """What a run has made so far, as a picture: a process that the server of its page starts.
 
-`python -m scanplan.report.growing_plan results/NAME` writes JSON to its output: `svg`, and `said`,
-a line for each kind of thing that is there.
+`python -m scanplan.report.growing_plan results/NAME ASSUMED` writes JSON to its output: `svg`, and
+`said`, a line for each kind of thing that is there. ASSUMED is JSON, too: `assumed_thickness_m` and
+`assumed_height_m`, as sheets are drawn; the usual ones where these are not named.
 """
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -26,8 +28,15 @@ Part = tuple[str, str, FloatArray]
 """A line of what is there, its elements, and places (n, 2) that are to be in the picture."""
 
 
-def draw_growing_plan(results: Path) -> dict[str, object]:
+def draw_growing_plan(
+    results: Path, assumed_m: Mapping[str, float] | None = None
+) -> dict[str, object]:
     """Return the picture of what is there of results.
+
+    Parameters
+    ----------
+    assumed_m : mapping of str to float, optional
+        What is assumed of the plan, see `floorplan.FloorPlan`.
 
     Returns
     -------
@@ -43,7 +52,7 @@ def draw_growing_plan(results: Path) -> dict[str, object]:
         ("scans.parquet", _draw_points),
         ("poses.parquet", _draw_way),
         ("plan/segments.parquet", _draw_segments),
-        ("plan/walls.parquet", _draw_plan),
+        ("plan/walls.parquet", partial(_draw_plan, assumed_m=assumed_m or {})),
     ]
     parts = [part for file, draw in steps if (results / file).exists() for part in draw(results)]
     if not parts:
@@ -94,11 +103,11 @@ def _draw_segments(results: Path) -> Iterator[Part]:
     yield f"{len(lines_m):,} pieces of walls in them", "" if is_over else drawn, np.zeros((0, 2))
 
 
-def _draw_plan(results: Path) -> Iterator[Part]:
+def _draw_plan(results: Path, assumed_m: Mapping[str, float]) -> Iterator[Part]:
     corrected = results / "plan/corrected"
     folder = corrected if all((corrected / f"{n}.parquet").exists() for n in _PLAN) else None
     files = {name: (folder or results / "plan") / f"{name}.parquet" for name in _PLAN}
-    plan = floorplan_files.read_floorplan(files, results.name)
+    plan = floorplan_files.read_floorplan(files, results.name, **assumed_m)
     bounds_m = np.stack(plan.bounds_m)
     drawn = [*plan_svg.draw_rooms(plan), *plan_svg.draw_finished(plan)]
     n_walls, n_rooms = len(plan.walls["wall"]), len(plan.rooms["room"])
@@ -112,6 +121,6 @@ def _list_places(columns: Columns) -> FloatArray:
 
 if __name__ == "__main__":
     try:
-        sys.stdout.write(json.dumps(draw_growing_plan(Path(sys.argv[1]))))
+        sys.stdout.write(json.dumps(draw_growing_plan(Path(sys.argv[1]), json.loads(sys.argv[2]))))
     except StageError as error:
         sys.exit(str(error))

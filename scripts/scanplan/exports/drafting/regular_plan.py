@@ -95,14 +95,18 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     thickness, and their line is their face. Doubts are left out: they stand on the sheet of what
     was measured.
     """
-    plan, n_cut = cut_stubs(leave_scraps(surveyed))
+    whole = leave_scraps(surveyed)
+    is_facade = find_facades(whole)
+    plan, n_cut = cut_stubs(whole, is_facade)
+    if plan is not whole:
+        is_facade = find_facades(plan)
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     adjusted = adjust_walls(walls, wanted)
     moved = moved_walls.move_walls(walls, wanted, adjusted)
     grown_m = np.where(walls.is_thick, adjusted.grown_m, 0.0)
     behind_m = np.where(
-        find_facades(plan),
+        is_facade,
         max(settings.facade_m, plan.assumed_thickness_m),
         plan.assumed_thickness_m,
     )

@@ -46,18 +46,29 @@ class _Building:
     rooms: BaseGeometry
 
 
-def cut_stubs(plan: FloorPlan) -> tuple[FloorPlan, int]:
+def cut_stubs(plan: FloorPlan, is_facade: BoolArray | None = None) -> tuple[FloorPlan, int]:
     """Return a plan whose walls end at the facades that they cross, and how many ends are cut.
 
     What bounds a room beyond stays, and what a person drew, openings among it. Openings that are
     not whole in what is left go with what is cut. An end by which other walls hang together with
     the building is not cut: a surveyor draws no wall that hangs on nothing.
+
+    Parameters
+    ----------
+    is_facade : (n,) bool, optional
+        Of its walls, where `find_facades` has been asked already.
+
+    Returns
+    -------
+    FloorPlan
+        The same one where nothing is cut.
+    int
     """
     lines_m = centrelines_m(plan.walls)
     building = _Building(
         lines_m,
         find_behind(plan),
-        np.flatnonzero(find_facades(plan)).tolist(),
+        np.flatnonzero(find_facades(plan) if is_facade is None else is_facade).tolist(),
         np.nan_to_num(np.asarray(plan.walls["thickness_m"], float)) / 2,
         overlays.unite_areas(plan.areas).boundary,
     )

@@ -1,15 +1,23 @@
 """Openings as they are drawn, on sheets and in the report: symbols, and how doors swing."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
-from scanplan.exports.sheet.content import facts_of, is_doubtful
+from scanplan.exports.sheet.content import draw_furniture, facts_of, is_doubtful
 from scanplan.exports.sheet.leaves import draw_swing, find_leaves
-from scanplan.exports.sheet.marks import Symbol
+from scanplan.exports.sheet.marks import Mark, Symbol, flatten
+from scanplan.exports.sheet.symbols import symbol_paths
+from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.tolerances import HINGE_M
+from scanplan.store import schemas
+
+_ON_LEAF_M = 0.1  # from a leaf that is drawn square to where it was seen
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
@@ -46,6 +54,28 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         )
         symbols.append(draw_swing(symbol, leaves) if kind == "door" else symbol)
     return symbols
+
+
+def draw_things(plan: FloorPlan, symbols: Sequence[Symbol]) -> Iterator[Mark]:
+    """Yield the outlines of furniture, columns and leaves, but for what a swing shows already.
+
+    That is a leaf in the way of its door, and what was seen of one and taken for furniture.
+    """
+    paths = [symbol_paths(symbol) for symbol in symbols if symbol.is_hinged]
+    pairs = [pair for of in paths for pair in zip(of[::2], of[1::2], strict=True)]
+    leaves = [shapely.LineString(leaf[:, :2]) for leaf, _ in pairs]
+    ways = [shapely.Polygon([leaf[0, :2], *flatten(arc)]) for leaf, arc in pairs]
+    shown = {
+        schemas.LEAF: overlays.unite_areas(overlays.buffer_shapes(np.array(ways, object), HINGE_M)),
+        "furniture": overlays.unite_areas(
+            overlays.buffer_shapes(np.array(leaves, object), _ON_LEAF_M)
+        ),
+    }
+    for mark in draw_furniture(plan):
+        outline = shapely.Polygon(mark.paths[0][:, :2])
+        of = shown.get(mark.kind)
+        if of is None or overlays.intersect_areas(outline, of).area < outline.area / 2:
+            yield mark
 
 
 @dataclass(frozen=True, eq=False)

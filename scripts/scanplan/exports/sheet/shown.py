@@ -8,7 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.marks import Mark, Symbol
-from scanplan.exports.sheet.openings import list_symbols
+from scanplan.exports.sheet.openings import draw_things, list_symbols
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -62,8 +62,8 @@ class Shown:
 def show_measured(plan: FloorPlan) -> Shown:
     """Return what a sheet shows of a plan as it was measured, with all doubts."""
     marks = [*content.draw_rooms(plan), *content.draw_walls(plan), *content.draw_axes(plan)]
-    marks += [*content.draw_doubts(plan), *content.draw_furniture(plan)]
     symbols = list_symbols(plan)
+    marks += [*content.draw_doubts(plan), *draw_things(plan, symbols)]
     spans_m = np.array([symbol.axis_m for symbol in symbols]).reshape(-1, 2, 2)
     half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
     built = overlays.unite_areas([*plan.bodies, *floorplan.buffer_lines(spans_m, half_m)])

@@ -11,7 +11,7 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -137,6 +137,10 @@ class RunConsole(logging.Handler):
         # children learn that their lines are shown here
         os.environ[WATCHED] = "1"
         threading.Thread(target=self._watch, daemon=True).start()
+
+    def tell_assumed(self, assumed: Mapping[str, Mapping[str, float]]) -> None:
+        """Tell a page that shows the run what drawings of datasets assume, see `RunStatus`."""
+        self._status.assume(assumed)
 
     def end(self) -> None:
         """Leave the screen to others: what is still at work was stopped."""

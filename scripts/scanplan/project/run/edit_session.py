@@ -218,7 +218,7 @@ class EditSession:
         with self._drawing:
             stamp = growing.stamp(self.results)
             if stamp and stamp != self._picture[0]:
-                self._picture = stamp, growing.draw(self.results)
+                self._picture = stamp, growing.draw(self.results, self.run.find_assumed())
             return self._picture[1]
 
     def _read_page(self) -> dict[str, Any]:

@@ -3,10 +3,11 @@
 A picture needs libraries that take a second to import, and a damaged file is to end no server.
 """
 
+import json
 import os
 import subprocess
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Mapping
 from pathlib import Path
 from typing import IO, cast
 
@@ -35,15 +36,20 @@ def stamp(results: Path) -> str:
     return ", ".join(found)
 
 
-def draw(results: Path) -> bytes:
+def draw(results: Path, assumed_m: Mapping[str, float]) -> bytes:
     """Return the picture of what there is, as JSON.
+
+    Parameters
+    ----------
+    assumed_m : mapping of str to float
+        See `run_status.RunStatus`.
 
     Raises
     ------
     StageError
         If what there is cannot be drawn.
     """
-    with _begin(PICTURE, results) as run:
+    with _begin(PICTURE, results, json.dumps(dict(assumed_m))) as run:
         try:
             drawn, said = run.communicate(timeout=_PATIENCE_S)
         except subprocess.TimeoutExpired:
@@ -76,11 +82,11 @@ def send_points(results: Path) -> Generator[bytes, None, None]:
             run.kill()
 
 
-def _begin(module: str, results: Path) -> subprocess.Popen[bytes]:
+def _begin(module: str, results: Path, *more: str) -> subprocess.Popen[bytes]:
     places = [str(_SCRIPTS), os.environ.get("PYTHONPATH", "")]
     return subprocess.Popen(
         # -P: modules are not looked for among the user's files
-        [sys.executable, "-P", "-m", module, str(results)],
+        [sys.executable, "-P", "-m", module, str(results), *more],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, places))},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

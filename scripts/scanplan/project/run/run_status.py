@@ -47,12 +47,15 @@ class RunStatus:
     wanted : dict of str to int
         Of each rule, how many stages the run has.
     ended, at_work, failed : list of ToldStage
+    assumed : dict of str to dict
+        Of each dataset `assumed_thickness_m` and `assumed_height_m`, as its sheets are drawn.
     """
 
     wanted: dict[str, int] = field(default_factory=dict)
     ended: list[ToldStage] = field(default_factory=list)
     at_work: list[ToldStage] = field(default_factory=list)
     failed: list[ToldStage] = field(default_factory=list)
+    assumed: dict[str, dict[str, float]] = field(default_factory=dict)
 
 
 class StatusFile:
@@ -62,6 +65,10 @@ class StatusFile:
         self._path = environment.get(STATUS, "")
         self._status = RunStatus()
         self._written = ""
+
+    def assume(self, assumed: Mapping[str, Mapping[str, float]]) -> None:
+        """Note what drawings of datasets assume."""
+        self._status.assumed = {name: dict(of) for name, of in assumed.items()}
 
     def begin(self, wanted: Mapping[str, int]) -> None:
         """Note the stages of the run."""
@@ -101,4 +108,4 @@ def read_status(path: Path) -> RunStatus:
     except (OSError, ValueError):
         return RunStatus()
     stages = {name: [ToldStage(**stage) for stage in told.pop(name)] for name in _LISTS}
-    return RunStatus(told["wanted"], **stages)
+    return RunStatus(told["wanted"], **stages, assumed=told.get("assumed", {}))

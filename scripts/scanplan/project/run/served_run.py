@@ -148,6 +148,10 @@ class ServedRun:
             said["error"] = self._find_fault()
         return said
 
+    def find_assumed(self) -> dict[str, float]:
+        """Return what drawings of the dataset assume; nothing where no run has told it."""
+        return self._read().assumed.get(self._name, {})
+
     def _read(self) -> RunStatus:
         return RunStatus() if self._status is None else read_status(self._status)
 

@@ -8,7 +8,7 @@ import shapely
 
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.marks import Mark, straight
-from scanplan.exports.sheet.openings import list_symbols
+from scanplan.exports.sheet.openings import draw_things, list_symbols
 from scanplan.exports.sheet.styles import STYLES
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.exports.svg import format_number, format_path
@@ -94,9 +94,10 @@ def draw_finished(plan: floorplan.FloorPlan) -> Iterator[str]:
 
     Openings say which they are, and in which wall, so that the page hides what is drawn anew.
     """
-    yield from draw_marks([*content.draw_walls(plan), *content.draw_furniture(plan)])
+    symbols = list_symbols(plan)
+    yield from draw_marks([*content.draw_walls(plan), *draw_things(plan, symbols)])
     numbers = (plan.openings[name].tolist() for name in ("opening", "wall"))
-    for symbol, number, wall in zip(list_symbols(plan), *numbers, strict=True):
+    for symbol, number, wall in zip(symbols, *numbers, strict=True):
         of = (
             f'class="opening {symbol.kind}" data-opening="opening {number}" data-host="wall {wall}"'
         )
