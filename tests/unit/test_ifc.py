@@ -201,7 +201,7 @@ def test_it_states_what_the_repository_demands_of_it(drawn, project_root):
     model = opened(drawn)
     demanded.validate(model)
     failed = {spec.name for spec in demanded.specifications if not spec.status}
-    assert len(demanded.specifications) == 11 and failed == set()
+    assert len(demanded.specifications) == 14 and failed == set()
 
 
 def test_the_demands_are_such_that_a_model_can_fail_them(project_root):
