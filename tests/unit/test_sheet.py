@@ -156,6 +156,21 @@ def test_the_sheet_is_small_and_well_filled_at_a_scale_to_read(extent_m, name, u
     assert (page.size_mm[0] < page.size_mm[1]) == upright
 
 
+def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
+    # 277 mm x 181 at 1:75: on A3 below 14 rows of tables 169 mm are left, above 9 of them 189
+    low_m, high_m, blocks = np.zeros(2), np.array([20.8, 13.6]), [6, 8, 8, 15]
+    page = paper.choose_page(low_m, high_m, 0.0, blocks)
+    assert (page.name, page.scale, page.rows, page.is_beside) == ("A3", 75, 9, True)
+    _, y0, right, y1 = page.drawing_mm
+    assert page.inner_mm[2] - right == pytest.approx(62)
+    *below, beside = page.slots()
+    assert all(slot.y_mm < y0 for slot in below) and right < beside.x_mm
+    assert y0 <= beside.y_mm - beside.rows * Paper.ROW and beside.y_mm <= y1 - Paper.ROW
+    # a lower one is as large above them
+    lower = paper.choose_page(low_m, np.array([20.8, 12.0]), 0.0, blocks)
+    assert (lower.name, lower.scale, lower.is_beside) == ("A3", 75, False)
+
+
 def test_a_plan_beyond_all_usual_scales_fills_the_largest_sheet():
     page = paper.choose_page(np.zeros(2), np.array([900_000, 1]), 0.0, [6])
     assert page.name == "A0" and page.scale == pytest.approx(900_000_000 / (1159 - 48), abs=1)

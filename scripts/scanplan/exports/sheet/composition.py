@@ -113,7 +113,9 @@ def lay_out(
         for turn in turns_deg
     ]
     # a quarter more where the plan is drawn larger so, on a sheet that is no larger
-    page = min(pages, key=lambda of: (np.prod(of.size_mm) > np.prod(pages[0].size_mm), of.scale))
+    page = min(
+        pages, key=lambda of: (not of.is_handy and of.area_mm2 > pages[0].area_mm2, of.scale)
+    )
     turn_deg = page.turn_deg
     page = replace(page, locale=facts.locale)
     # doors that swing out put the chain before them farther off: room on the other side goes there

@@ -66,6 +66,8 @@ class Page:
         Left free around the plan.
     locale : Locale
         How it is written.
+    is_beside : bool
+        Whether tables stand in a column right of the plan, too.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Page:
     middle_m: FloatArray
     around_mm: float = Paper.AROUND
     locale: Locale = ENGLISH
+    is_beside: bool = False
 
     @property
     def inner_mm(self) -> tuple[float, float, float, float]:
@@ -84,10 +87,21 @@ class Page:
         return 2 * Paper.MARGIN, Paper.MARGIN, width - Paper.MARGIN, height - Paper.MARGIN
 
     @property
+    def area_mm2(self) -> float:
+        """Of the sheet."""
+        return self.size_mm[0] * self.size_mm[1]
+
+    @property
+    def is_handy(self) -> bool:
+        """Whether most printers have such sheets."""
+        return self.name in _SMALL
+
+    @property
     def drawing_mm(self) -> tuple[float, float, float, float]:
         """The part of the frame above tables and title block: as `inner_mm`."""
         x0, y0, x1, y1 = self.inner_mm
-        return x0, y0 + self.rows * Paper.ROW + Paper.ROW / 2, x1, y1
+        aside = (Paper.COLUMN + Paper.ROW / 2) * self.is_beside
+        return x0, y0 + self.rows * Paper.ROW + Paper.ROW / 2, x1 - aside, y1
 
     @cached_property
     def mm_per_m(self) -> float:
@@ -114,8 +128,16 @@ class Page:
         return turned @ rotation(self.turn_deg)
 
     def slots(self) -> Iterator[Slot]:
-        """Yield the places for tables below the plan, from the left; the title block is right."""
+        """Yield the places for tables below the plan, from the left, then that beside it.
+
+        The title block is right.
+        """
         yield from find_slots(self.inner_mm, self.rows)
+        if self.is_beside:
+            _, y0, x1, y1 = self.drawing_mm
+            # a row below the frame
+            high = int((y1 - y0) // Paper.ROW) - 1
+            yield Slot(x1 + Paper.ROW / 2, y0 + high * Paper.ROW, high)
 
 
 def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterator[Slot]:
@@ -142,7 +164,8 @@ def choose_page(
 ) -> Page:
     """Choose the sheet and the scale for a plan.
 
-    Every sheet, lying or upright, has the largest of the usual scales at which it holds the plan.
+    Every sheet, lying or upright, with tables below the plan alone or beside it, too, has the
+    largest of the usual scales at which it holds the plan.
     Of A3 and A4 the first is taken whose room the plan fills well enough, else that which it fills
     best. Where rooms would be too small on these for words to go into them, the smallest sheet is
     taken on which they are not, and ever smaller scales where they are on all. Tables are broken
@@ -174,7 +197,7 @@ def choose_page(
     pages = [page for page in fitting if page is not None]
     for readable in (_READABLE, *scales):
         found = [page for page in pages if page.scale <= readable]
-        small = [page for page in found if page.name in _SMALL]
+        small = [page for page in found if page.is_handy]
         if found and not small:
             return found[0]
         good = [page for page in small if _fills(page, extent_m) >= _ENOUGH]
@@ -191,17 +214,30 @@ def choose_page(
 def _fit_sheet(
     page: Page, scales: Sequence[int], extent_m: FloatArray, blocks: list[int]
 ) -> Page | None:
-    """Return a sheet at the largest scale at which it holds a plan; None if there is none."""
-    long, short = SIZES_MM[page.name]
+    """Return a sheet at the largest scale at which it holds a plan; None if there is none.
+
+    Of the ways to hold it there the first that it fills well enough, else the first.
+    """
     for scale in scales:
-        for size_mm in ((long, short), (short, long)):
-            empty = replace(page, size_mm=size_mm, scale=scale)
+        found = [
+            filled
+            for way in _list_ways(replace(page, scale=scale))
             # three rows under a head are a table, fewer look forgotten
-            for least in (3, 1):
-                filled = _fill_page(empty, blocks, least)
-                if filled is not None and _holds(filled, extent_m):
-                    return filled
+            for least in (3, 1)
+            if (filled := _fill_page(way, blocks, least)) is not None and _holds(filled, extent_m)
+        ]
+        if found:
+            good = [way for way in found if _fills(way, extent_m) >= _ENOUGH]
+            return (good or found)[0]
     return None
+
+
+def _list_ways(page: Page) -> Iterator[Page]:
+    """Yield a sheet lying and upright, with tables below the plan alone, then beside it, too."""
+    long, short = SIZES_MM[page.name]
+    for is_beside in (False, True):
+        for size_mm in ((long, short), (short, long)):
+            yield replace(page, size_mm=size_mm, is_beside=is_beside)
 
 
 def _fills(page: Page, extent_m: FloatArray) -> float:
@@ -222,9 +258,10 @@ def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     """
     most = int((page.size_mm[1] / 2) // Paper.ROW)
     for rows in range(TITLE_ROWS, most):
-        places = fill_slots(find_slots(page.inner_mm, rows), blocks)
+        filled = replace(page, rows=rows)
+        places = fill_slots(filled.slots(), blocks)
         if places is not None and all(_is_unbroken(parts, least) for parts in places):
-            return replace(page, rows=rows)
+            return filled
     return None
 
 

@@ -108,11 +108,13 @@ def state_frame(site: Site, measured: GeoReference | None, locale: Locale = ENGL
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
-    """Yield the frame, and the line above tables and title block."""
+    """Yield the frame, and the lines between the plan and tables and title block."""
     x0, y0, x1, y1 = page.inner_mm
     yield Mark("frame", [_box(x0, y0, x1, y1)], True, "frame", "frame")
-    level = page.drawing_mm[1]
+    _, level, right, _ = page.drawing_mm
     yield Mark("title", [straight(np.array([[x0, level], [x1, level]]))], element="strip")
+    if page.is_beside:
+        yield Mark("title", [straight(np.array([[right, level], [right, y1]]))], element="column")
 
 
 def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator[Mark | Word]:
