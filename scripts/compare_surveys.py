@@ -66,7 +66,8 @@ def compare_surveys(
     columns = change_table.tabulate_changes(found.changes)
     tied = change_table.summarise_tie(found.tie)
     lines = change_table.summarise_changes(found.changes)
-    warning = change_table.warn_of_others(found.tie)
+    warnings = [change_table.warn_of_others(found.tie), change_table.warn_of_planes(found)]
+    warnings = [warning for warning in warnings if warning]
     facts = compared_sheet.ComparedFacts(
         settings["project"] or "",
         (read_day(a), read_day(b)),
@@ -76,7 +77,7 @@ def compare_surveys(
     sheet = change_sheet.compose_change_sheet(found, facts)
     figure = drawing.draw_sheet(sheet)
     title = f"Changes from {names[0]} to {names[1]}"
-    summary = [title, *lines, tied, *filter(None, [warning])]
+    summary = [title, *lines, tied, *warnings]
     drawn = svg.format_svg_sheet(sheet)
     tables.write_table(
         outputs["table"],
@@ -95,7 +96,7 @@ def compare_surveys(
     )
     atomic.write_text(outputs["page"], changes_page.format_page(found, page, summary, drawn))
     atomic.write_text(outputs["summary"], "\n".join([*summary, ""]))
-    if warning:
+    for warning in warnings:
         log.log_warning(f"compare_surveys: {warning}")
     log.log_line(f"compare_surveys: {'; '.join(lines)}; {tied}")
 

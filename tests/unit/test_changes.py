@@ -28,6 +28,7 @@ from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.surveys import RaySight
 from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, OPENED, SAME, SHUT
 from scanplan.project.dataset import pair_surveys
+from scanplan.rays.ray_set import gather_rays
 from scanplan.store import schemas, tables
 
 LEAF = (5, 3.0, 5, 3.9)
@@ -313,7 +314,8 @@ def looks(hits, passes, places=5):
         times = counts[cells, heights]
         told_of = np.column_stack([np.repeat(cells, times), np.repeat(heights, times)])
         rows.append(np.column_stack([told_of, np.arange(len(told_of)) % places]))
-    return ray_cells.Looks(hits, passes, *rows)
+    plane = ray_cells.Plane(np.nan) if hits.shape[1] == 1 else None
+    return ray_cells.Looks(hits, passes, *rows, plane)
 
 
 def test_rays_above_what_was_solid_deny_nothing():
@@ -334,7 +336,7 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
 
 
 def test_what_a_planar_scanner_saw_is_gone_if_free_in_the_row_of_its_plane():
-    planar = replace(looks([[7]], [[0]]), row=1)
+    planar = replace(looks([[7]], [[0]]), plane=ray_cells.Plane(0.3))
     for hits, passes, is_gone in (
         ([[0, 0, 0, 0]], [[0, 9, 0, 0]], True),
         ([[0, 0, 0, 6]], [[0, 9, 9, 0]], True),
@@ -348,7 +350,7 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_in_the_row_of_its_plane():
 
 
 def test_what_has_heights_is_gone_if_planar_rays_go_through_what_was_solid_in_their_row():
-    through = replace(looks([[0]], [[9]]), row=1)
+    through = replace(looks([[0]], [[9]]), plane=ray_cells.Plane(0.3))
     for hits, passes, is_gone in (
         ([[0, 5, 0, 0]], [[9, 0, 9, 9]], True),
         ([[5, 0, 5, 5]], [[0, 9, 0, 0]], False),
@@ -357,24 +359,96 @@ def test_what_has_heights_is_gone_if_planar_rays_go_through_what_was_solid_in_th
         assert found.is_passed.tolist() == [is_gone]
 
 
-@pytest.mark.parametrize(("height_m", "row"), [(0.3, 1), (1.1, 4), (0.0, -1), (5.0, -1)])
-def test_a_planar_survey_is_in_the_row_of_its_map_if_a_scanner_may_be_mounted_there(height_m, row):
-    sight = survey().sight
-    assert isinstance(sight, RaySight)
-    rays = sight.rays
+def at_height(of, height_m):
+    """The same survey, its plane so high above the floor."""
+    rays = of.sight.rays
     up_m = np.array([0, 0, height_m])
     lifted = replace(rays, sensors_m=rays.sensors_m + up_m, xyz_m=rays.xyz_m + up_m)
+    return replace(of, sight=RaySight(lifted))
+
+
+@pytest.mark.parametrize(("height_m", "row"), [(0.3, 1), (1.1, 4), (0.0, -1), (5.0, -1)])
+def test_a_planar_survey_is_in_the_row_of_its_map_if_a_scanner_may_be_mounted_there(height_m, row):
     line, length_m = ray_cells.line_between(np.array(INNER, float).reshape(2, 2))
-    assert RaySight(lifted).look_at(line, (0, length_m), 0.1).row == row
+    sight = at_height(survey(), height_m).sight
+    assert sight.look_at(line, (0, length_m), 0.1).row == row
+    assert np.degrees(sight.plane.beam_rad) == pytest.approx(0.5, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "is_one"),
+    [
+        ((0.3, 0.5), (0.3, 0.25), True),
+        # a plane that is tilted comes to the row beside
+        ((0.45, 0.5), (0.55, 0.5), True),
+        ((0.3, 0.5), (1.0, 0.5), False),
+        # where a height is not known a scanner is taken to be where it was, if it is the same
+        ((np.nan, 0.5), (np.nan, 0.51), True),
+        ((np.nan, 0.5), (0.3, 0.5), True),
+        ((np.nan, 0.5), (np.nan, 0.25), False),
+        ((np.nan, 0.5), (0.3, 1.0), False),
+    ],
+)
+def test_planes_are_one_by_their_heights_or_else_by_their_beams(one, other, is_one):
+    planes = [ray_cells.Plane(*of) for of in (one, other)]
+    assert ray_cells.are_one_plane(*planes) == is_one == ray_cells.are_one_plane(*planes[::-1])
+    assert ray_cells.are_one_plane(planes[0], None)
+
+
+@pytest.mark.parametrize("change", ["wall", "door", "furniture"])
+def test_what_one_plane_shows_and_another_cannot_see_is_not_seen(change):
+    low, high = {
+        "wall": (survey(), survey([INNER, (6.0, 1.0, 6.0, 3.0)])),
+        "door": (survey(doors=[]), survey()),
+        "furniture": (survey(), survey(pieces=[shapely.box(1.5, 1.5, 2.5, 2.2)])),
+    }[change]
+    told_at = {}
+    for height_m in (0.3, 1.0):
+        found = compare(at_height(low, 0.3), at_height(high, height_m))
+        told_at[height_m] = {c.verdict for c in told(found, change.replace("door", "opening"))}
+        if height_m == 1.0:
+            assert any(c.verdict == NOT_SEEN and c.number_a < 0 for c in found)
+            # what both show stands
+            same = [c for c in found if c.table == "wall" and c.verdict == SAME]
+            assert {c.number_a for c in same} == {0, 1, 2, 3, 4}
+    assert told_at == {0.3: {verdicts.NEW}, 1.0: set()}
+
+
+@pytest.mark.parametrize(
+    ("height_m", "values"), [(0.3, ()), (1.0, ("0.30 m", "1.00 m")), (None, ("0.30 m", "unknown"))]
+)
+def test_planes_that_lie_apart_are_told_with_their_heights(height_m, values):
+    a, b = (at_height(survey(), of) for of in (0.3, height_m or 0.0))
+    if height_m is None:
+        rays = b.sight.rays
+        few = gather_rays(
+            [(i, rays.xyz_m[rows][::2]) for i, rows in enumerate(rays.rows)],
+            dict(enumerate(rays.sensors_m)),
+            planar=True,
+        )
+        b = replace(b, sight=RaySight(few))
+    compared = comparison.Comparison(a, b, tie(a, b), [])
+    said = change_table.warn_of_planes(compared)
+    assert bool(said) == bool(values) and all(value in said for value in values)
+
+
+def test_a_front_before_a_wall_has_not_moved_in_another_plane():
+    # a cupboard's front at 0.3 m hides the wall that is seen over it
+    front = [(0, 0, 8, 0), (8, 0, 8, 5), (8, 4.6, 0, 4.6), (0, 5, 0, 0)]
+    low, high = survey([], [], outer=front), survey([], [])
+    moved = [c for c in compare(at_height(low, 0.3), at_height(high, 1.0)) if c.verdict == MOVED]
+    assert not any(c.is_change for c in moved)
+    in_one_plane = compare(at_height(low, 0.3), at_height(high, 0.3))
+    assert any(c.is_change and c.table == "wall" for c in in_one_plane)
 
 
 def test_rays_of_unknown_heights_deny_nothing_that_a_planar_scanner_saw():
     planar, all_over = looks([[7]], [[0]]), looks([[0]], [[30]])
     assert ray_cells.compare_looks(planar, all_over).is_passed.all()
-    of_any_height = replace(all_over, is_mixed=True)
+    of_any_height = replace(all_over, plane=None)
     assert not ray_cells.compare_looks(planar, of_any_height).is_passed.any()
     # of what it saw itself it knows as little, and as much
-    assert ray_cells.compare_looks(replace(planar, is_mixed=True), of_any_height).is_passed.all()
+    assert ray_cells.compare_looks(replace(planar, plane=None), of_any_height).is_passed.all()
 
 
 @given(st.integers(0, 9), st.integers(0, 9))

@@ -293,6 +293,35 @@ def test_a_planar_survey_is_as_high_as_its_map_says_if_one_may_be_mounted_there(
     assert place_drive(own, level, PlaneMotion(), None).lift_m == 0.0
 
 
+def lift(own, up_m, *, planar=True):
+    """The scans of a survey in a map whose heights are so much larger."""
+    store, known = own
+    scans = [(i, xyz_m + np.array([0, 0, up_m])) for i, xyz_m in store.scans()]
+    poses = known.map_from_sensor.copy()
+    poses[:, 2, 3] += up_m
+    return Store(scans, PlaneMotion(), planar), replace(known, map_from_sensor=poses)
+
+
+def test_planar_surveys_before_one_in_space_are_compared_with_it_at_their_own_height():
+    plan = survey().plan
+    in_space = replace(plan, floor_z_m=LIFTED_M)
+    own = [own_scans([INNER], [DOOR], SENSORS, from_ns=day * 10**15) for day in range(3)]
+    known = [(plan, lift(of, 0.3)) for of in own[:2]]
+    known.append((in_space, lift(own[2], LIFTED_M + 0.3, planar=False)))
+    seen = []
+
+    def assemble(joined):
+        seen.append(np.unique(joined.known.map_from_sensor[:, 2, 3]))
+        return (plan if joined.planar else in_space), tables.no_rows(schemas.EVIDENCE)
+
+    grown = growth.grow_plan(known, {}, assemble)
+    heights_m = [step.a.sight.plane.height_m for step in grown.steps]
+    assert heights_m == pytest.approx([0.3, 0.3])
+    # and from then on they lie on its floor
+    assert [of.tolist() for of in seen] == [pytest.approx([0.3]), pytest.approx([LIFTED_M + 0.3])]
+    assert {c.verdict for step in grown.steps for c in step.changes if c.table == "wall"} == {SAME}
+
+
 def test_one_plan_of_space_and_plane_has_the_rooms_of_both():
     joined, _ = space_and_plane()
     made = array_plan.assemble_plan(joined, "both", 1)

@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.ray_cells import Plane, are_one_plane
 from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES, Change
 from scanplan.plan.floorplan import say_count
 from scanplan.types import Array
@@ -129,3 +130,16 @@ def warn_of_others(tie: FrameTie) -> str:
     ways = say_count(len(turns), "other way")
     remedy = "hold the drawing against the floor, or survey what tells its sides apart"
     return f"the floor looks alike in {ways}, turned by {', '.join(turns)}; {remedy}"
+
+
+def warn_of_planes(compared: Comparison) -> str:
+    """Return in words that two planar scanners looked at other heights; nothing if they did not."""
+    planes = compared.a.sight.plane, compared.b.sight.plane
+    if are_one_plane(*planes):
+        return ""
+    heights = " and ".join(_say_height(plane) for plane in planes if plane is not None)
+    return f"planes of the scanners at {heights}: what one alone shows counts as not seen"
+
+
+def _say_height(plane: Plane) -> str:
+    return f"{plane.height_m:.2f} m" if plane.row >= 0 else "an unknown height"

@@ -72,7 +72,8 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
     sigma_m = np.sqrt(own_m2 + of_motion_m**2 + fit.scatter_m**2)
     is_shifted = np.abs(pairs.shift_m) > SIGMAS * sigma_m
     by_returns_m = np.full(len(sigma_m), np.nan)
-    for row in np.flatnonzero(is_shifted).tolist():
+    is_compared = is_shifted & ray_cells.are_one_plane(a.sight.plane, b.sight.plane)
+    for row in np.flatnonzero(is_compared).tolist():
         span_m = (float(pairs.low_m[row]), float(pairs.high_m[row]))
         line = _face_line(a.faces, pairs.a[row])
         reach_m = REACH_M + ray_cells.CELL_M

@@ -66,13 +66,21 @@ def grow_plan(
         If two do not fit each other.
     """
     (first, scans), *later = surveys
-    level = next((plan for plan, own in surveys if not own[0].planar), None)
+    level: FloorPlan | None = None if scans[0].planar else first
     drives = [place_drive(scans, first, PlaneMotion(), level)]
     known: tuple[FloorPlan, Scans] = (first, scans)
     evidence: Columns = {}
     steps: list[Comparison] = []
     for plan, own in later:
         step = comparison.compare_surveys((known[0], plan), (known[1], own))
+        if level is None and not own[0].planar:
+            # planar ones before it were compared in their own heights
+            level = plan
+            before = zip(drives, surveys, strict=False)
+            drives = [
+                replace(place_drive(of.own, planar, of.motion, level), stale=of.stale)
+                for of, (planar, _) in before
+            ]
         stale = find_stale_places(step)
         drives = [replace(drive, stale=(*drive.stale, stale)) for drive in drives]
         drives.append(place_drive(own, plan, step.tie.fit.motion, level))

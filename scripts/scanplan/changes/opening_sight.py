@@ -97,6 +97,8 @@ def look_through(opening: Opening, of: Survey, by: Survey) -> Views:
         len(np.unique(told[is_way[told[:, 0], told[:, 1]], 2]))
         for told in (other.passing, other.ending)
     )
+    # what closes it in another plane may be lower than a way, or the wall below a window
+    is_closed &= ray_cells.are_one_plane(own.plane, other.plane)
     shares = float(np.mean(passes > hits)), float(np.mean(is_closed))
     return Views(True, *shares, n_passing, n_ending)
 

@@ -27,10 +27,51 @@ N_ROWS = 12
 HIGHEST_M = 2.0
 """Above the floor: lintels, and what planar scanners are mounted below."""
 _MOUNTED_M = (0.1, 2.0)  # above the floor: from a robot's bumper to overhead
+_LIKE_BEAMS = 0.05  # what spacings of one scanner differ by: it turns as well while it drives
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
+
+
+@dataclass(frozen=True)
+class Plane:
+    """The level plane that all rays of a survey lie in.
+
+    Attributes
+    ----------
+    height_m : float
+        Above the floor, NaN where its map does not say.
+    beam_rad : float
+        Between beams.
+    """
+
+    height_m: float
+    beam_rad: float = 0.0
+
+    @property
+    def row(self) -> int:
+        """Of the heights above the floor, -1 where it is not known."""
+        return int(self.height_m / ROW_M) if np.isfinite(self.height_m) else -1
+
+    def may_be(self, other: "Plane") -> bool:
+        """Return whether both are one, as far as is known.
+
+        They are by their heights, or by their beams where one is not known: a scanner stays where
+        it is mounted. A plane that is tilted comes to the rows beside its own.
+        """
+        if min(self.row, other.row) >= 0:
+            return abs(self.row - other.row) <= 1
+        most_rad = max(self.beam_rad, other.beam_rad)
+        return abs(self.beam_rad - other.beam_rad) <= _LIKE_BEAMS * most_rad
+
+
+def are_one_plane(one: Plane | None, other: Plane | None) -> bool:
+    """Return whether two surveys may be compared as if they looked at the same heights.
+
+    None is of a survey that does not lie in one plane.
+    """
+    return one is None or other is None or one.may_be(other)
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,23 +86,30 @@ class Looks:
         Cell, row and place of each ray that goes through.
     ending : (m, 3) int64
         Likewise of those that end there.
-    is_mixed : bool
-        Whether rays are of many heights, of which none is known.
-    row : int
-        That all of them lie in, where they are of one height that is known; else -1.
+    plane : Plane, optional
+        That all of them lie in.
     """
 
     hits: IntArray
     passes: IntArray
     passing: IntArray
     ending: IntArray
-    is_mixed: bool = False
-    row: int = -1
+    plane: Plane | None = None
 
     @property
     def is_flat(self) -> bool:
         """Whether heights mean nothing."""
         return self.hits.shape[1] == 1
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether rays are of many heights, of which none is known."""
+        return self.is_flat and self.plane is None
+
+    @property
+    def row(self) -> int:
+        """That all rays lie in, where they are of one height that is known; else -1."""
+        return -1 if self.plane is None else self.plane.row
 
     @property
     def solid(self) -> BoolArray:
@@ -72,10 +120,24 @@ class Looks:
         return is_hit | (is_above & is_below & (self.passes + self.hits == 0))
 
 
+def find_plane(rays: RaySet) -> Plane | None:
+    """Return the plane that rays lie in; None of those in space, or of many unknown heights.
+
+    It is as high as its own map says, if a scanner may be mounted there.
+    """
+    if not rays.planar or _spread_m(rays) > ROW_M:
+        return None
+    height_m = float(rays.sensors_m[0, 2]) if len(rays.sensors_m) else 0.0
+    per_deg = rays.beams.per_deg
+    per_deg = per_deg[per_deg > 0]
+    beam_rad = float(np.deg2rad(1 / np.median(per_deg))) if len(per_deg) else 0.0
+    return Plane(height_m if is_mounted_at(height_m) else np.nan, beam_rad)
+
+
 def look_at(
     rays: RaySet, line: Line, span_m: tuple[float, float], half_m: float, slack_m: float
 ) -> Looks:
-    """Return what rays show of a stretch of wall.
+    """Return what rays show of a stretch of wall, but for the plane that they lie in.
 
     Parameters
     ----------
@@ -105,15 +167,7 @@ def look_at(
     ending = told[is_near & (np.abs(face.behind_m) <= at_m)]
     passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
     shape = (n_cells, _count_rows(rays))
-    is_mixed = rays.planar and _spread_m(rays) > ROW_M
-    known = -1 if is_mixed else _find_row(rays)
-    return Looks(_count(ending, shape), _count(passing, shape), passing, ending, is_mixed, known)
-
-
-def _find_row(rays: RaySet) -> int:
-    """Return the row of a planar survey's plane, as high as its own map says; -1 of none."""
-    height_m = float(rays.sensors_m[0, 2]) if rays.planar and len(rays.sensors_m) else 0.0
-    return int(height_m / ROW_M) if is_mounted_at(height_m) else -1
+    return Looks(_count(ending, shape), _count(passing, shape), passing, ending)
 
 
 def is_mounted_at(height_m: float) -> bool:
@@ -243,7 +297,8 @@ def compare_looks(first: Looks, other: Looks) -> Later:
     """Return what another survey shows of what a first one found solid.
 
     What a planar survey saw is in the row of its plane, and is free if no row beside it, which a
-    tilted plane comes to, is solid. Where heights mean nothing to one of them, what it saw may be
+    tilted plane comes to, is solid. Of what one saw another shows nothing that looked at other
+    heights alone. Where heights mean nothing to one of them, what it saw may be
     at any: to the other a cell is solid that is so at all heights that it looked at, and free that
     is so at all, low ones too, as a planar scanner looks at chairs and beds.
     """
@@ -261,6 +316,9 @@ def compare_looks(first: Looks, other: Looks) -> Later:
         solid = np.repeat(solid, other.hits.shape[1], axis=1)
     elif first.is_flat and other.is_mixed and not first.is_mixed:
         # it may have looked over all that a planar scanner saw
+        is_denied[:] = True
+    elif not are_one_plane(first.plane, other.plane):
+        # it did look over that, or below
         is_denied[:] = True
     elif other.is_flat and not first.is_flat:
         looked_at = first.hits + first.passes > 0

@@ -10,7 +10,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import AT_M, Looks, look_at, place_returns
+from scanplan.changes.ray_cells import AT_M, Looks, Plane, find_plane, look_at, place_returns
 from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import Line
@@ -27,6 +27,11 @@ _OPEN_M = 0.1  # below the ceiling nothing is asked: of a lintel or a beam
 
 class Sight(Protocol):
     """What is known of the places of a floor beside its plan, in the common frame."""
+
+    @property
+    def plane(self) -> Plane | None:
+        """That all of it lies in; None where it has many heights."""
+        ...
 
     def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
         """Return what it shows of a stretch of wall, see `ray_cells.look_at`."""
@@ -52,9 +57,19 @@ class RaySight:
     rays: RaySet
     slack_m: float = AT_M
 
+    @property
+    def plane(self) -> Plane | None:
+        """That the rays lie in, see `ray_cells.find_plane`."""
+        return self._plane
+
+    @cached_property
+    def _plane(self) -> Plane | None:
+        return find_plane(self.rays)
+
     def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
         """Return what rays show of a stretch of wall, see `ray_cells.look_at`."""
-        return look_at(self.rays, line, span_m, half_m, self.slack_m)
+        looks = look_at(self.rays, line, span_m, half_m, self.slack_m)
+        return replace(looks, plane=self.plane)
 
     def place_returns(self, line: Line, span_m: tuple[float, float], reach_m: float) -> FloatArray:
         """Return how far returns lie before a face, see `ray_cells.place_returns`."""

@@ -33,6 +33,9 @@ class DrawnSight:
     solids: Sequence[Solid]
     holes: Sequence[Solid]
 
+    plane = None
+    """It has all heights."""
+
     def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:
         """Return what stands in a stretch of wall, as rays that look at all of it would say."""
         reach_m = half_m + AT_M
