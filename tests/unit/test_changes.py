@@ -32,6 +32,7 @@ from scanplan.rays.ray_set import gather_rays
 from scanplan.store import schemas, tables
 
 LEAF = (5, 3.0, 5, 3.9)
+Y_M = ("y0_m", "y1_m")
 MOVED_ROOM = PlaneMotion(np.radians(40), 3.0, 0.5)
 
 
@@ -152,6 +153,22 @@ def test_a_wall_that_what_is_behind_shows_to_be_gone_is_so_whatever_that_is(by_m
     assert (gone.verdict, gone.number_a, gone.number_b, gone.is_change) == (GONE, 4, -1, True)
     assert (new.verdict, new.number_a, new.number_b, new.is_change) == (NEW, -1, 4, False)
     assert new.shape.centroid.x - gone.shape.centroid.x == pytest.approx(by_m, abs=0.01)
+
+
+@pytest.mark.parametrize("is_earlier", [True, False])
+def test_a_wall_whose_other_side_stands_has_not_moved_from_what_stood_before_it(is_earlier):
+    # a cupboard as long as half of the wall hides that side of it
+    with_cupboard = survey([INNER, (4.45, 0, 4.45, 2.5)], [])
+    faces = with_cupboard.plan.faces
+    hidden = np.isclose(faces["x0_m"], 4.9) & np.isclose(faces["x1_m"], 4.9)
+    shown = {name: np.where(hidden & (faces[name] < 2.5), 2.5, faces[name]) for name in Y_M}
+    plan = replace(with_cupboard.plan, faces={**faces, **shown})
+    both = (replace(with_cupboard, plan=plan), survey(doors=[]))
+    changes = compare(*(both if is_earlier else both[::-1]))
+    (cupboard,) = told(changes, "wall")
+    number = cupboard.number_a if is_earlier else cupboard.number_b
+    assert cupboard.verdict == (GONE if is_earlier else verdicts.NEW) and number == 5
+    assert {c.number_a for c in changes if c.table == "wall" and c.verdict == SAME} == set(range(5))
 
 
 def test_a_shift_within_its_error_is_none():

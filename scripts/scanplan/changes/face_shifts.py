@@ -15,6 +15,7 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 _TURN_RAD = np.radians(4)  # faces of one wall, of which one is short
 _LEAST_M = 0.3  # side by side: less may be a jamb
 _LIKE_M = 0.03  # faces and returns agree within that: they are of other parts of the wall
+_BESIDE = 0.5  # of a stretch: what another pair shows there holds for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +57,8 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
     """Pair the faces of two surveys that may be of one wall, wherever it stands now.
 
     A shift is held against the returns of both surveys at the same heights; where these deny it,
-    the faces are of different things, such as a wall and the cupboard before it, and no pair.
+    the faces are of different things, such as a wall and the cupboard before it, and no pair. So
+    are those of a wall whose other side is where that of another wall was.
 
     Parameters
     ----------
@@ -82,7 +84,27 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
     off_m = np.abs(by_returns_m - pairs.shift_m)
     agrees = off_m <= np.maximum(SIGMAS * sigma_m, _LIKE_M)
     kept = ~is_shifted | agrees | np.isnan(by_returns_m)
+    kept &= ~_are_of_others(a.faces, b.faces, pairs, is_shifted)
     return FaceShifts(a.faces, b.faces, pairs.select(kept), sigma_m[kept], agrees[kept])
+
+
+def _are_of_others(
+    faces: SeenFaces, others: SeenFaces, pairs: FacePairs, is_shifted: BoolArray
+) -> BoolArray:
+    """Return which shifted pairs (k,) have a wall that stands, by a side of it, as another."""
+    wall, other = faces.wall[pairs.a], others.wall[pairs.b]
+    along = faces.along[pairs.a]
+    found = np.zeros(len(wall), bool)
+    for row in np.flatnonzero(is_shifted).tolist():
+        off_m = (pairs.middle_m - pairs.middle_m[row]) @ along[row]
+        half_m, own_half_m = pairs.length_m / 2, pairs.length_m[row] / 2
+        shared_m = np.minimum(off_m + half_m, own_half_m) - np.maximum(off_m - half_m, -own_half_m)
+        is_beside = ~is_shifted & (shared_m >= _BESIDE * pairs.length_m[row])
+        is_beside &= np.abs(along @ along[row]) >= np.cos(_TURN_RAD)
+        is_of_wall = (wall == wall[row]) & (wall >= 0)
+        is_of_other = (other == other[row]) & (other >= 0)
+        found[row] = np.any(is_beside & (is_of_wall != is_of_other))
+    return found
 
 
 def _face_line(faces: SeenFaces, row: int | IntArray) -> Line:
