@@ -285,6 +285,19 @@ def test_a_door_broken_through_is_new_and_takes_nothing_of_its_wall():
     assert told(changes, "wall") == []
 
 
+@pytest.mark.parametrize("p_true", [0.9, 0.3])
+def test_a_way_that_parts_a_wall_is_new_where_that_was_one(p_true):
+    parted = survey([(5, 0, 5, 3.0), (5, 3.9, 5, 5)], [])
+    loose = survey()
+    rated = {"wall": np.array([-1], np.int32), "p_true": np.array([p_true])}
+    plan = replace(parted.plan, openings={**loose.plan.openings, **rated})
+    later = replace(parted, plan=plan)
+    for first, second, verdict in ((survey(doors=[]), later, verdicts.NEW), (later, later, None)):
+        found = told(compare(first, second), "opening")
+        assert [c.verdict for c in found] == ([verdict] if verdict and p_true > 0.5 else [])
+        assert all(c.is_change for c in found)
+
+
 def test_a_door_moved_along_its_wall_is_told_by_rays_at_its_edge():
     there = (5, 3.3, 5, 4.2)
     (door,) = told(compare(survey(), survey(doors=[there])), "opening")

@@ -70,7 +70,24 @@ def compare_openings(a: Survey, b: Survey, walls: Sequence[Change] = ()) -> list
         *paired,
         *(_take_along(change, a, walls) for change in gone),
         *(_take_along(change, b, turned).turned() for change in new),
+        *_judge_loose(a, b, of_b),
+        *(change.turned() for change in _judge_loose(b, a, of_a)),
     ]
+
+
+def _judge_loose(of: Survey, by: Survey, others: Sequence[Opening]) -> Iterator[Change]:
+    """Yield ways in no wall of one survey that are flush wall to the other.
+
+    Of others that are in none little is known: the shape of the floor says that they are.
+    """
+    for opening in _list_openings(of, are_loose=True):
+        if opening.kind not in WAYS or opening.held < 1:
+            continue
+        if any(_overlap(opening, other) >= _OVERLAP for other in others):
+            continue
+        change = _judge_alone(opening, of, by)
+        if change.verdict == GONE:
+            yield change
 
 
 def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
@@ -92,7 +109,8 @@ def _is_known(opening: Opening) -> bool:
     return opening.kind in _KINDS
 
 
-def _list_openings(survey: Survey) -> Iterator[Opening]:
+def _list_openings(survey: Survey, *, are_loose: bool = False) -> Iterator[Opening]:
+    """Yield the openings of a survey that are in walls, or those in none."""
     plan = survey.plan
     left_m, right_m = plan.sides_m
     unrated = np.full(len(plan.openings["opening"]), np.nan)
@@ -100,11 +118,11 @@ def _list_openings(survey: Survey) -> Iterator[Opening]:
     lines_m = survey.motion.move(centrelines_m(plan.openings))
     for row, number in enumerate(plan.openings["opening"].tolist()):
         host = int(plan.hosts[row])
-        # those in no wall are inferred of the floor's shape
-        if host < 0:
+        if (host < 0) != are_loose:
             continue
         line, width_m = ray_cells.line_between(lines_m[row])
-        half_m = float(left_m[host] + right_m[host]) / 2 if plan.thick[host] else 0.0
+        is_thick = host >= 0 and bool(plan.thick[host])
+        half_m = float(left_m[host] + right_m[host]) / 2 if is_thick else 0.0
         kind, p_true = str(plan.openings["type"][row]), float(rated[row])
         yield Opening(number, kind, line, width_m, half_m, p_true)
 
