@@ -33,6 +33,7 @@ from scanplan.store import schemas, tables
 
 LEAF = (5, 3.0, 5, 3.9)
 Y_M = ("y0_m", "y1_m")
+STILL = PlaneMotion()
 MOVED_ROOM = PlaneMotion(np.radians(40), 3.0, 0.5)
 
 
@@ -50,6 +51,20 @@ def compare(a, b):
     changes += opening_changes.compare_openings(a, b, changes)
     changes += room_changes.compare_rooms(a, b, changes)
     return changes + room_changes.compare_pieces(a, b, schemas.PIECE)
+
+
+class Stub:
+    """What is the same all along every wall."""
+
+    plane = None
+
+    def __init__(self, seen):
+        self.seen = seen
+
+    def look_at(self, line, span_m, half_m):
+        n = ray_cells.count_cells(span_m)
+        rows = [of[of[:, 0] < n] for of in (self.seen.passing, self.seen.ending)]
+        return ray_cells.Looks(self.seen.hits[:n], self.seen.passes[:n], *rows)
 
 
 def told(changes, table, *wanted):
@@ -354,6 +369,42 @@ def test_rays_above_what_was_solid_deny_nothing():
     through_it = looks([[0, 0, 0, 0]], [[9, 9, 9, 9]])
     assert not ray_cells.compare_looks(half_height, over_it).is_passed.any()
     assert ray_cells.compare_looks(half_height, through_it).is_passed.all()
+
+
+def test_rays_that_go_over_what_stands_where_more_stood_show_it_to_be_lowered():
+    wall = looks([[5, 5, 5, 5]], [[0, 0, 0, 0]])
+    for hits, passes, is_lowered in (
+        ([[9, 9, 0, 0]], [[0, 0, 5, 2]], True),
+        # by a row alone, by too few rays, or by none
+        ([[9, 9, 9, 0]], [[0, 0, 0, 9]], False),
+        ([[9, 9, 0, 0]], [[0, 0, 1, 1]], False),
+        ([[9, 9, 0, 0]], [[0, 0, 0, 0]], False),
+        # what ends over it stands
+        ([[9, 9, 0, 9]], [[0, 0, 9, 0]], False),
+        ([[0, 0, 0, 0]], [[0, 0, 9, 9]], False),
+    ):
+        found = ray_cells.compare_looks(wall, looks(hits, passes))
+        assert found.is_lowered.tolist() == [is_lowered]
+        assert (len(found.over) > 0) == is_lowered
+    # nor was it known how high what a planar scanner saw is
+    of_a_plane = looks([[7]], [[0]])
+    assert not ray_cells.compare_looks(of_a_plane, looks([[9, 9, 0, 0]], [[0, 0, 5, 5]])).is_lowered
+    # no wall was as high before
+    low = looks([[5, 5, 0, 0]], [[0, 0, 9, 9]])
+    assert not ray_cells.compare_looks(low, looks([[9, 9, 0, 0]], [[0, 0, 9, 9]])).is_lowered.any()
+
+
+@pytest.mark.parametrize("is_later_low", [True, False])
+def test_a_wall_that_rays_go_over_now_is_maybe_gone_and_not_the_same(is_later_low):
+    wall = looks([[5, 5, 5, 5]] * 80, [[0] * 4] * 80)
+    desk = looks([[9, 9, 0, 0]] * 80, [[0, 0, 5, 5]] * 80)
+    seen = {True: (wall, desk), False: (wall, wall)}[is_later_low]
+    before, after = survey(doors=[]), survey([], [])
+    sights = [replace(of, sight=Stub(own)) for of, own in zip((before, after), seen, strict=True)]
+    shifts = face_shifts.measure_shifts(before, after, fit_frame(before.faces, after.faces, STILL))
+    (inner,) = [c for c in wall_changes.compare_walls(*sights, shifts) if c.number_a == 4]
+    assert inner.verdict == (GONE if is_later_low else SAME) and not inner.is_change
+    assert bool(inner.doubt) == is_later_low
 
 
 def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():

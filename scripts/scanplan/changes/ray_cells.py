@@ -31,6 +31,7 @@ _LIKE_BEAMS = 0.05  # what spacings of one scanner differ by: it turns as well w
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
+_LOWERED_ROWS = 2  # that something is lower by: a plane may be tilted by one
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
 
 
@@ -273,12 +274,17 @@ class Later:
     is_hit : bool
         Rays end there, and fewer go through.
     passing, ending : Looks' rows of rays at what was solid.
+    is_lowered : bool
+        Rays end there low, and go over that where it was solid.
+    over : Looks' rows of those that do.
     """
 
     is_passed: BoolArray
     is_hit: BoolArray
     passing: IntArray
     ending: IntArray
+    is_lowered: BoolArray
+    over: IntArray
 
     def count_places(self, cells: BoolArray) -> tuple[int, int]:
         """Return from how many places rays go through some cells (c,), and from how many not.
@@ -328,8 +334,23 @@ def compare_looks(first: Looks, other: Looks) -> Later:
     n_hits = np.where(solid, hits, 0).sum(axis=1)
     is_passed = (n_passes >= FEW) & (n_hits <= STRAY_SHARE * (n_passes + n_hits)) & ~is_denied
     is_hit = (n_hits > 0) & (n_hits > n_passes)
-    at_solid = [told[solid[told[:, 0], told[:, 1]]] for told in (other.passing, other.ending)]
-    return Later(is_passed, is_hit, *at_solid)
+    passing, ending = (told[_is_in(solid, told)] for told in (other.passing, other.ending))
+    is_over = _lies_above(solid & (hits > passes), solid)
+    n_over, n_ends = (np.where(is_over, of, 0).sum(axis=1) for of in (passes, hits))
+    is_lowered = (n_over >= FEW) & (n_ends <= STRAY_SHARE * (n_over + n_ends)) & ~is_denied
+    over = passing[_is_in(is_over & is_lowered[:, None], passing)]
+    return Later(is_passed, is_hit, passing, ending, is_lowered, over)
+
+
+def _is_in(cells: BoolArray, told: IntArray) -> BoolArray:
+    return cells[told[:, 0], told[:, 1]]
+
+
+def _lies_above(standing: BoolArray, solid: BoolArray) -> BoolArray:
+    """Return which solid cells (c, r) lie above all that stands in their column, if two rows do."""
+    is_below = np.logical_or.accumulate(standing[:, ::-1], axis=1)[:, ::-1]
+    above = solid & ~is_below & standing.any(axis=1, keepdims=True)
+    return above & (above.sum(axis=1, keepdims=True) >= _LOWERED_ROWS)
 
 
 def line_between(ends_m: FloatArray) -> tuple[Line, float]:

@@ -25,7 +25,7 @@ _LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what 
 _BOW_M = 0.05  # of a piece of a curved wall: half of what rays are off by at a wall
 _COSINE = math.cos(math.radians(20))  # of faces of one piece: those of others are turned
 
-_MATCHED, _IN_OPENING, _PASSED, _HIT, _UNKNOWN = range(5)
+_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT, _UNKNOWN = range(6)
 """What another survey shows of a cell of a wall."""
 
 
@@ -122,9 +122,10 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
                 np.isfinite(found.shift_m),
                 _cover(wall, others_m),
                 compared.is_passed,
+                compared.is_lowered,
                 compared.is_hit,
             ],
-            [_MATCHED, _IN_OPENING, _PASSED, _HIT],
+            [_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT],
             _UNKNOWN,
         )
         is_open = _cover(wall, own_m[of.plan.openings["wall"] == wall.number])
@@ -309,6 +310,12 @@ def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
     shape = _shape(wall, cells)
     if kind in (_PASSED, _MATCHED) and p > 0.5:
         return Change("wall", wall.number, -1, GONE, p * wall.p_true, shape)
+    if kind == _LOWERED:
+        # a window may be broken through as well, over what stands
+        n_over = len(np.unique(later.over[is_of_it[later.over[:, 0]], 2]))
+        p = verdicts.rate_places(n_over, 0) * wall.p_true / 2
+        doubt = "what stands there now is lower"
+        return Change("wall", wall.number, -1, GONE, p, shape, doubt=doubt)
     if kind == _HIT:
         return Change("wall", wall.number, -1, SAME, 1 - p, shape)
     return Change("wall", wall.number, -1, NOT_SEEN, math.nan, shape)
