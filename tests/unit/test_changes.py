@@ -20,6 +20,7 @@ from scanplan.changes import (
     opening_changes,
     ray_cells,
     room_changes,
+    scan_plane,
     verdicts,
     wall_changes,
 )
@@ -359,7 +360,7 @@ def looks(hits, passes, places=5):
         times = counts[cells, heights]
         told_of = np.column_stack([np.repeat(cells, times), np.repeat(heights, times)])
         rows.append(np.column_stack([told_of, np.arange(len(told_of)) % places]))
-    plane = ray_cells.Plane(np.nan) if hits.shape[1] == 1 else None
+    plane = scan_plane.ScanPlane(np.nan) if hits.shape[1] == 1 else None
     return ray_cells.Looks(hits, passes, *rows, plane)
 
 
@@ -417,7 +418,7 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_at_all_heights():
 
 
 def test_what_a_planar_scanner_saw_is_gone_if_free_in_the_row_of_its_plane():
-    planar = replace(looks([[7]], [[0]]), plane=ray_cells.Plane(0.3))
+    planar = replace(looks([[7]], [[0]]), plane=scan_plane.ScanPlane(0.3))
     for hits, passes, is_gone in (
         ([[0, 0, 0, 0]], [[0, 9, 0, 0]], True),
         ([[0, 0, 0, 6]], [[0, 9, 9, 0]], True),
@@ -431,7 +432,7 @@ def test_what_a_planar_scanner_saw_is_gone_if_free_in_the_row_of_its_plane():
 
 
 def test_what_has_heights_is_gone_if_planar_rays_go_through_what_was_solid_in_their_row():
-    through = replace(looks([[0]], [[9]]), plane=ray_cells.Plane(0.3))
+    through = replace(looks([[0]], [[9]]), plane=scan_plane.ScanPlane(0.3))
     for hits, passes, is_gone in (
         ([[0, 5, 0, 0]], [[9, 0, 9, 9]], True),
         ([[5, 0, 5, 5]], [[0, 9, 0, 0]], False),
@@ -471,9 +472,9 @@ def test_a_planar_survey_is_in_the_row_of_its_map_if_a_scanner_may_be_mounted_th
     ],
 )
 def test_planes_are_one_by_their_heights_or_else_by_their_beams(one, other, is_one):
-    planes = [ray_cells.Plane(*of) for of in (one, other)]
-    assert ray_cells.are_one_plane(*planes) == is_one == ray_cells.are_one_plane(*planes[::-1])
-    assert ray_cells.are_one_plane(planes[0], None)
+    planes = [scan_plane.ScanPlane(*of) for of in (one, other)]
+    assert scan_plane.are_one_plane(*planes) == is_one == scan_plane.are_one_plane(*planes[::-1])
+    assert scan_plane.are_one_plane(planes[0], None)
 
 
 @pytest.mark.parametrize("change", ["wall", "door", "furniture"])

@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import Plane, are_one_plane
+from scanplan.changes.scan_plane import ScanPlane, are_one_plane
 from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES, Change
 from scanplan.plan.floorplan import say_count
 from scanplan.types import Array
@@ -141,5 +141,5 @@ def warn_of_planes(compared: Comparison) -> str:
     return f"planes of the scanners at {heights}: what one alone shows counts as not seen"
 
 
-def _say_height(plane: Plane) -> str:
+def _say_height(plane: ScanPlane) -> str:
     return f"{plane.height_m:.2f} m" if plane.row >= 0 else "an unknown height"

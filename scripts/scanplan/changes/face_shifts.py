@@ -6,6 +6,7 @@ import numpy as np
 
 from scanplan.changes import ray_cells
 from scanplan.changes.frame_fit import FrameFit
+from scanplan.changes.scan_plane import are_one_plane
 from scanplan.changes.seen_faces import FacePairs, SeenFaces, keep_nearest, pair_faces
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import REACH_M, SIGMAS
@@ -74,7 +75,7 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
     sigma_m = np.sqrt(own_m2 + of_motion_m**2 + fit.scatter_m**2)
     is_shifted = np.abs(pairs.shift_m) > SIGMAS * sigma_m
     by_returns_m = np.full(len(sigma_m), np.nan)
-    is_compared = is_shifted & ray_cells.are_one_plane(a.sight.plane, b.sight.plane)
+    is_compared = is_shifted & are_one_plane(a.sight.plane, b.sight.plane)
     for row in np.flatnonzero(is_compared).tolist():
         span_m = (float(pairs.low_m[row]), float(pairs.high_m[row]))
         line = _face_line(a.faces, pairs.a[row])

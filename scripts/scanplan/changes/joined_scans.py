@@ -10,7 +10,7 @@ import numpy as np
 
 from scanplan.changes.comparison import Scans
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import is_mounted_at
+from scanplan.changes.scan_plane import is_mounted_at
 from scanplan.changes.stale_rays import StalePlaces
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.changes import ray_cells
+from scanplan.changes.scan_plane import are_one_plane
 from scanplan.changes.surveys import Survey
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import WAYS
@@ -98,7 +99,7 @@ def look_through(opening: Opening, of: Survey, by: Survey) -> Views:
         for told in (other.passing, other.ending)
     )
     # what closes it in another plane may be lower than a way, or the wall below a window
-    is_closed &= ray_cells.are_one_plane(own.plane, other.plane)
+    is_closed &= are_one_plane(own.plane, other.plane)
     shares = float(np.mean(passes > hits)), float(np.mean(is_closed))
     return Views(True, *shares, n_passing, n_ending)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from scanplan.changes.scan_plane import ROW_M, ScanPlane, are_one_plane
 from scanplan.geometry.lines import Line
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
@@ -20,59 +21,15 @@ CELL_M = 0.1
 """Along: a few rays of each scan."""
 AT_M = 0.1
 """Before and behind a wall's sides: what poses, ranges and two straight maps err by."""
-ROW_M = 0.25
-"""Up: between two beams of 2 degrees at 7 m."""
 N_ROWS = 12
 """Up to 3 m."""
 HIGHEST_M = 2.0
 """Above the floor: lintels, and what planar scanners are mounted below."""
-_MOUNTED_M = (0.1, 2.0)  # above the floor: from a robot's bumper to overhead
-_LIKE_BEAMS = 0.05  # what spacings of one scanner differ by: it turns as well while it drives
 _PLACE_M = 1.0  # scans of one square see the same, and err alike
 _STEEPEST = 3.0  # along for each metre across: more obliquely ends of walls are passed by
 _LOW_ROW = 0  # up to 0.25 m: below the top of a bed and the seat of a chair
 _LOWERED_ROWS = 2  # that something is lower by: a plane may be tilted by one
 _THICKEST_M = 1.2  # of a wall: no ray is taken for one that ends inside
-
-
-@dataclass(frozen=True)
-class Plane:
-    """The level plane that all rays of a survey lie in.
-
-    Attributes
-    ----------
-    height_m : float
-        Above the floor, NaN where its map does not say.
-    beam_rad : float
-        Between beams.
-    """
-
-    height_m: float
-    beam_rad: float = 0.0
-
-    @property
-    def row(self) -> int:
-        """Of the heights above the floor, -1 where it is not known."""
-        return int(self.height_m / ROW_M) if np.isfinite(self.height_m) else -1
-
-    def may_be(self, other: "Plane") -> bool:
-        """Return whether both are one, as far as is known.
-
-        They are by their heights, or by their beams where one is not known: a scanner stays where
-        it is mounted. A plane that is tilted comes to the rows beside its own.
-        """
-        if min(self.row, other.row) >= 0:
-            return abs(self.row - other.row) <= 1
-        most_rad = max(self.beam_rad, other.beam_rad)
-        return abs(self.beam_rad - other.beam_rad) <= _LIKE_BEAMS * most_rad
-
-
-def are_one_plane(one: Plane | None, other: Plane | None) -> bool:
-    """Return whether two surveys may be compared as if they looked at the same heights.
-
-    None is of a survey that does not lie in one plane.
-    """
-    return one is None or other is None or one.may_be(other)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +44,7 @@ class Looks:
         Cell, row and place of each ray that goes through.
     ending : (m, 3) int64
         Likewise of those that end there.
-    plane : Plane, optional
+    plane : ScanPlane, optional
         That all of them lie in.
     """
 
@@ -95,7 +52,7 @@ class Looks:
     passes: IntArray
     passing: IntArray
     ending: IntArray
-    plane: Plane | None = None
+    plane: ScanPlane | None = None
 
     @property
     def is_flat(self) -> bool:
@@ -119,20 +76,6 @@ class Looks:
         is_above = np.logical_or.accumulate(is_hit, axis=1)
         is_below = np.logical_or.accumulate(is_hit[:, ::-1], axis=1)[:, ::-1]
         return is_hit | (is_above & is_below & (self.passes + self.hits == 0))
-
-
-def find_plane(rays: RaySet) -> Plane | None:
-    """Return the plane that rays lie in; None of those in space, or of many unknown heights.
-
-    It is as high as its own map says, if a scanner may be mounted there.
-    """
-    if not rays.planar or _spread_m(rays) > ROW_M:
-        return None
-    height_m = float(rays.sensors_m[0, 2]) if len(rays.sensors_m) else 0.0
-    per_deg = rays.beams.per_deg
-    per_deg = per_deg[per_deg > 0]
-    beam_rad = float(np.deg2rad(1 / np.median(per_deg))) if len(per_deg) else 0.0
-    return Plane(height_m if is_mounted_at(height_m) else np.nan, beam_rad)
 
 
 def look_at(
@@ -169,20 +112,6 @@ def look_at(
     passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
     shape = (n_cells, _count_rows(rays))
     return Looks(_count(ending, shape), _count(passing, shape), passing, ending)
-
-
-def is_mounted_at(height_m: float) -> bool:
-    """Return whether a planar scanner may be as high above the floor."""
-    lowest_m, highest_m = _MOUNTED_M
-    return lowest_m <= height_m <= highest_m
-
-
-def _spread_m(rays: RaySet) -> float:
-    """Return how far apart most returns are in height."""
-    if not len(rays.xyz_m):
-        return 0.0
-    low_m, high_m = np.percentile(rays.xyz_m[:: max(len(rays.xyz_m) // 1000, 1), 2], (5, 95))
-    return float(high_m - low_m)
 
 
 def _number_rows(height_m: FloatArray, *, planar: bool) -> IntArray:

@@ -10,7 +10,8 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.plane_motion import PlaneMotion
-from scanplan.changes.ray_cells import AT_M, Looks, Plane, find_plane, look_at, place_returns
+from scanplan.changes.ray_cells import AT_M, Looks, look_at, place_returns
+from scanplan.changes.scan_plane import ScanPlane, find_plane
 from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import Line
@@ -29,7 +30,7 @@ class Sight(Protocol):
     """What is known of the places of a floor beside its plan, in the common frame."""
 
     @property
-    def plane(self) -> Plane | None:
+    def plane(self) -> ScanPlane | None:
         """That all of it lies in; None where it has many heights."""
         ...
 
@@ -58,12 +59,12 @@ class RaySight:
     slack_m: float = AT_M
 
     @property
-    def plane(self) -> Plane | None:
-        """That the rays lie in, see `ray_cells.find_plane`."""
+    def plane(self) -> ScanPlane | None:
+        """That the rays lie in, see `scan_plane.find_plane`."""
         return self._plane
 
     @cached_property
-    def _plane(self) -> Plane | None:
+    def _plane(self) -> ScanPlane | None:
         return find_plane(self.rays)
 
     def look_at(self, line: Line, span_m: tuple[float, float], half_m: float) -> Looks:

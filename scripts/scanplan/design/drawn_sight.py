@@ -8,7 +8,8 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.changes.ray_cells import AT_M, CELL_M, HIGHEST_M, N_ROWS, ROW_M, Looks, count_cells
+from scanplan.changes.ray_cells import AT_M, CELL_M, HIGHEST_M, N_ROWS, Looks, count_cells
+from scanplan.changes.scan_plane import ROW_M
 from scanplan.changes.verdicts import MOST_PLACES
 from scanplan.design.drawn_storey import DrawnStorey, Solid
 from scanplan.geometry import overlays
