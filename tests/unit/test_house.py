@@ -106,9 +106,21 @@ def home_of(path: Path) -> Path:
 
 
 @cache
+def code() -> list[house_finds.Module]:
+    """Return all files of `scripts/`, parsed once."""
+    return house_finds.read_modules(SCRIPTS)
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """Return the syntax trees of all files of `scripts/`."""
+    return {SCRIPTS / module.path: module.tree for module in code()}
+
+
+@cache
 def imported(path: Path, *, types: bool) -> frozenset[str]:
     """Return the dotted names that a file imports; with `types` also those for type checkers."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = trees()[path]
     names = set()
     for node in run_nodes(tree) if not types else ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -232,10 +244,10 @@ def test_a_library_is_imported_in_its_homes_only(library):
     assert [user for user in users if not user.startswith(HOMES[library] or ("-",))] == []
 
 
-def find_overlays(path: Path, source: str) -> list[str]:
+def find_overlays(path: Path, tree: ast.Module) -> list[str]:
     """Return the places of a file, file:line, that ask shapely for an overlay."""
     found = []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(tree):
         if isinstance(node, ast.Attribute) and node.attr in OVERLAYS:
             # the output's bytes, sets by their class, rows of pandas
             of = ast.unparse(node.value).rpartition(".")[2]
@@ -249,9 +261,7 @@ def find_overlays(path: Path, source: str) -> list[str]:
 
 def test_only_overlays_asks_for_overlays():
     homes = {PACKAGE / "geometry/overlays.py", PACKAGE / "geometry/overlay_steps.py"}
-    found = {
-        path: find_overlays(path, path.read_text("utf-8")) for path in sorted(SCRIPTS.rglob("*.py"))
-    }
+    found = {path: find_overlays(path, tree) for path, tree in trees().items()}
     assert all(found.pop(home) for home in homes)
     assert [place for places in found.values() for place in places] == []
 
@@ -269,7 +279,7 @@ def test_only_overlays_asks_for_overlays():
 )
 def test_an_overlay_elsewhere_is_found_with_its_line(planted):
     place = PACKAGE / "plan/planted.py"
-    assert find_overlays(place, planted) == ["scripts/scanplan/plan/planted.py:2"]
+    assert find_overlays(place, ast.parse(planted)) == ["scripts/scanplan/plan/planted.py:2"]
 
 
 @pytest.mark.parametrize("operator", "|&-^")
@@ -351,15 +361,15 @@ def test_stages_take_all_that_their_rules_hand_them():
 
 
 def test_public_functions_are_annotated():
-    assert house_finds.find_unannotated(house_finds.read_modules(SCRIPTS)) == []
+    assert house_finds.find_unannotated(code()) == []
 
 
 def test_lines_are_short():
-    assert house_finds.find_long_lines(house_finds.read_modules(SCRIPTS)) == []
+    assert house_finds.find_long_lines(code()) == []
 
 
 def test_parameters_are_listed_where_there_is_more_to_say_than_their_class():
-    found = house_finds.find_silent_parameters(house_finds.read_modules(SCRIPTS))
+    found = house_finds.find_silent_parameters(code())
     # rules of a plan make way for its model, and take their docstrings with them
     assert [place for place in found if not place.startswith("scanplan/plan/")] == []
 

@@ -19,10 +19,8 @@ IS_KILLED = "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"
 
 
 @pytest.fixture(scope="module")
-def project(project_root, tmp_path_factory):
-    project = Project(project_root, tmp_path_factory.mktemp("optional"))
-    planned = project.run()
-    assert planned.returncode == 0, planned.stderr
+def project(planned, tmp_path_factory):
+    project = Project(planned, tmp_path_factory.mktemp("optional"), made=True)
     project.right = project.digests()
     return project
 

@@ -21,10 +21,10 @@ READERS = {
 
 
 @pytest.fixture(scope="module")
-def project(project_root, tmp_path_factory):
+def project(planned, tmp_path_factory):
     """Make the plan of a folder with the chosen scans of the demo."""
-    project = Project(project_root, tmp_path_factory.mktemp("recorded"))
-    made = project.run("results/demo/selected.bag", "results/demo/plan/walls.parquet")
+    project = Project(planned, tmp_path_factory.mktemp("recorded"), made=True)
+    made = project.run("results/demo/selected.bag")
     assert made.returncode == 0, made.stderr
     (project.folder / "floor").mkdir()
     for name in ("selected.bag", "selected.bag.yaml"):
