@@ -19,6 +19,7 @@ from house_shapes import (
     find_fractions,
     is_length_or_share,
     marks_interface,
+    read_given,
 )
 
 PACKAGE = "scanplan"
@@ -137,8 +138,10 @@ def find_prose_tests(modules: list[Module]) -> list[str]:
     return [
         f"{module.path}:{node.lineno} {node.name}"
         for module in of_messages
+        for given in [read_given(module.tree)]
         for node in ast.walk(module.tree)
-        if isinstance(node, Function) and node.name.startswith("test_") and asserts_prose(node)
+        if isinstance(node, Function) and node.name.startswith("test_")
+        if asserts_prose(node, given)
     ]
 
 

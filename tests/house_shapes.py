@@ -90,20 +90,42 @@ def find_fractions(function: Function) -> Iterator[ast.Constant]:
                 yield node
 
 
-def asserts_prose(test: Function) -> bool:
+def asserts_prose(test: Function, given: str = "") -> bool:
     """Return whether a test holds three words that follow one another, or more.
 
-    In an assertion, a match, or what a line must tell. What is marked `wording` is left out.
+    In an assertion, a match, or what a line must tell. What is marked `wording` is left out, and
+    words that are given to the code: it hands them on, and better ones of its own cost no test.
     """
     if any(marks_interface(mark) for mark in test.decorator_list):
         return False
+    held = (node for part in list_held(test) for node in ast.walk(part))
+    return any(phrase not in given for node in held for phrase in _list_phrases(node))
+
+
+def list_held(test: Function) -> list[ast.expr]:
+    """Return the expressions of a test that hold what is said."""
     held: list[ast.expr] = [node.test for node in ast.walk(test) if isinstance(node, ast.Assert)]
     held += [node.value for node in ast.walk(test) if _is_match(node)]
     held += [node for node in ast.walk(test) if _tells(node)]
     matches = {node.id for node in held if isinstance(node, ast.Name)}
     if matches & {part.arg for part in test.args.args}:
         held += test.decorator_list
-    return any(map(_is_phrase, (node for part in held for node in ast.walk(part))))
+    return held
+
+
+def read_given(tree: ast.Module) -> str:
+    """Return the texts of a module of tests but docstrings and what its tests hold, a line each."""
+    tests = [node for node in ast.walk(tree) if isinstance(node, Function)]
+    left_out: set[ast.AST] = {
+        node for test in tests for part in list_held(test) for node in ast.walk(part)
+    }
+    left_out |= {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    texts = [
+        (node, node.value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    return "\n".join(text for node, text in texts if node not in left_out)
 
 
 def _is_match(node: ast.AST) -> TypeGuard[ast.keyword]:
@@ -122,12 +144,10 @@ def _tells(node: ast.AST) -> TypeGuard[ast.Call]:
     return False
 
 
-def _is_phrase(node: ast.AST) -> bool:
-    return (
-        isinstance(node, ast.Constant)
-        and isinstance(node.value, str)
-        and _PHRASE.search(node.value) is not None
-    )
+def _list_phrases(node: ast.AST) -> list[str]:
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        return _PHRASE.findall(node.value)
+    return []
 
 
 def find_repeated(files: Mapping[str, str], *, by_shape: bool) -> dict[str, int]:

@@ -16,8 +16,8 @@ from export_files import export_files
 from export_plan import export_plan
 from helpers import floorplan_making
 from helpers.default_settings import SETTINGS
+from helpers.refusals import refused
 from helpers.report_making import registration
-from scanplan.errors import StageError
 from scanplan.exports.building.sheet_set import compose_sheets
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan import planning
@@ -208,7 +208,7 @@ def test_a_storey_without_floor_and_elevation_ends_in_one_line(floors, tmp_path)
     free = tmp_path / "free.parquet"
     tables.write_table(free, planning.TABLES["free"], floorplan_making.free())
     files = floors | {"free": [free, floors["free"][1]]}
-    with pytest.raises(StageError, match="no floor was seen in storey Ground; give its elevation"):
+    with refused(value="storey Ground", remedy="elevation_m"):
         building(files, tmp_path, storey("Ground", None), storey("First", 3.0))
 
 

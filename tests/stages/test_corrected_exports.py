@@ -52,6 +52,7 @@ def test_geojson_says_so(corrected):
         assert said([r[kind] for r in rows], [r["corrected"] for r in rows]) == expected
 
 
+@pytest.mark.wording
 def test_the_building_model_says_so(corrected):
     model = ifcopenshell.open(corrected["ifc"])
     found = {}
@@ -83,6 +84,7 @@ def test_tables_and_layers_say_so(corrected):
     )
 
 
+@pytest.mark.wording
 def test_the_3d_model_says_so(corrected):
     content = corrected["glb"].read_bytes()
     (length,) = struct.unpack_from("<I", content, 12)
@@ -92,6 +94,7 @@ def test_the_3d_model_says_so(corrected):
     assert found == walls | {"Door 2": "changed by hand", "Küche": "changed by hand"}
 
 
+@pytest.mark.wording
 def test_the_drawing_says_so_on_a_layer_of_its_own(corrected):
     document = ezdxf.readfile(corrected["dxf"])
     assert not document.audit().errors
@@ -108,6 +111,7 @@ def test_the_drawing_says_so_on_a_layer_of_its_own(corrected):
     }  # fmt: skip
 
 
+@pytest.mark.wording
 def test_sheets_show_it_and_explain_it(corrected, tmp_path):
     root = ElementTree.parse(corrected["svg"]).getroot()
     names = {e.get("id") for e in root.iter()}

@@ -107,6 +107,7 @@ def drawn_twice(draw, output):
     return first.decode()
 
 
+@pytest.mark.wording
 def test_each_figure_states_what_it_shows(results, tmp_path):
     drawn = draw(results, tmp_path / "once")
     for text in drawn.values():
@@ -125,6 +126,7 @@ def test_figures_are_the_same_bytes_again(results, tmp_path):
     assert draw(results, tmp_path / "once") == draw(results, tmp_path / "again")
 
 
+@pytest.mark.wording
 def test_all_scans_may_be_selected(results, tmp_path):
     drawn = draw(results, tmp_path / "all", n_scans=None)
     assert "numbered by rank (2)" in drawn["scans"]

@@ -129,6 +129,7 @@ def draw_wall(page, report, *places_m):
 
 
 @pytest.mark.parametrize("planar", [False, True])
+@pytest.mark.wording
 def test_a_wall_drawn_beside_one_that_is_missing_lies_on_its_returns(chromium, tmp_path, planar):
     points_m = WALL_M[1::3] if planar else WALL_M
     report = write_report(tmp_path, points_m, planar=planar)

@@ -64,6 +64,7 @@ def test_a_second_run_gives_the_same_bytes(files, tmp_path):
             assert file.read_bytes() == again[what].read_bytes()
 
 
+@pytest.mark.wording
 def test_north_is_drawn_where_it_is_known(tmp_path):
     site = SETTINGS["plan"]["export"]["site"] | {"north_deg": 90.0}
     drawn = exported(tmp_path, site=site)["svg"].read_text()

@@ -15,6 +15,7 @@ def carried_out(page, tmp_path):
     return found
 
 
+@pytest.mark.wording
 def test_a_door_opens_as_two_taps_say(page, tmp_path):
     page.run("elements.showElement('opening 1')")
     press(page, "Opens so …", "#card")
@@ -119,6 +120,7 @@ def test_parts_of_rooms_are_one_as_two_taps_say(page, tmp_path):
     assert sorted(found.rooms["area_m2"].round()) == [9.0, 12.0]
 
 
+@pytest.mark.wording
 def test_two_parts_of_one_room_are_one_again(page, tmp_path):
     for x_m in (1, 3):
         page.run(f"edits.add({{element: 'room', action: 'split', line: [[{x_m}, 0], [{x_m}, 3]]}})")

@@ -6,7 +6,7 @@ import pytest
 
 from helpers import floorplan_making, report_making
 from helpers.pages import click, in_sight, middle_of, needs_browser, text_of
-from scanplan.errors import StageError
+from helpers.refusals import refused
 from scanplan.recordings.motion import pose_kind
 from scanplan.store import schemas, tables
 
@@ -71,6 +71,7 @@ def test_of_odometry_the_figures_after_one_motion_come_first(tmp_path):
     assert Tables(text).rows["truth"][0][1:3] == ["aligned", "registered"]
 
 
+@pytest.mark.wording
 def test_it_says_what_it_was_made_of_and_how_good_that_is(report):
     text = report.read_text()
     assert "made of 3 scans chosen from 4 registered ones; 5 were candidates" in text
@@ -155,6 +156,7 @@ def test_faces_alone_without_truth_and_times_make_a_report(tmp_path):
     assert len(found["walls"]) == 1 and len(found["stages"]) == 1
 
 
+@pytest.mark.wording
 def test_a_survey_without_any_wall_in_sight_makes_a_report(tmp_path):
     files = report_making.files(tmp_path)
     nothing = {column: np.zeros(4) for column in ("gain", "covered", "bound")}
@@ -166,7 +168,7 @@ def test_a_selection_of_another_run_is_told(tmp_path):
     files = report_making.files(tmp_path)
     selection = report_making.selection() | {"scan_id": np.array([9, 7, 12, 0], np.int32)}
     tables.write_table(files["selection"], schemas.SELECTION, selection)
-    with pytest.raises(StageError, match="no pose of scan 7 of selection"):
+    with refused(file="selection", value="scan 7"):
         report_making.written(tmp_path, files)
 
 
@@ -187,6 +189,7 @@ def slide(page, k):
 
 
 @needs_browser
+@pytest.mark.wording
 def test_the_slider_moves_the_plan(page):
     def state():
         return [in_sight(page, s) for s in (".scan", ".stretch", ".stretch.sure", "#shown path")]

@@ -180,6 +180,7 @@ def test_means_are_over_items_and_surveys():
     assert mean_by_level(table, "x").loc[1, "a"] == 3.0
 
 
+@pytest.mark.wording
 def test_the_sentence_on_budgets_names_the_best_of_either_kind():
     found = point_budgets.FOUND_SHARE
     rows = [("every_nth", 5, 0, found, 0.2), ("wall_length", 5, 0, found, 0.3)]

@@ -75,6 +75,7 @@ def test_the_interval_is_students():
     assert page_module.margin_interval([0.3]) == (0.3, 0.3)
 
 
+@pytest.mark.wording
 def test_a_verdict_goes_by_the_interval_of_all_seeds():
     verdict = page_module.verdict_over_seeds
     assert verdict([0.2, 0.21, 0.2]) == Verdict("holds", "yes")
@@ -91,6 +92,7 @@ def test_a_verdict_goes_by_the_interval_of_all_seeds():
     assert "undecided: holds for 1 of 2 seeds" in page(rooms_hull=made.growing(40))
 
 
+@pytest.mark.wording
 def test_what_does_not_hold_says_whose_doing_it_is_with_what_was_measured():
     table = claims()
     tenth = next(claim for claim in CLAIMS if claim.name == "tenth_little_loss")
@@ -109,6 +111,7 @@ def test_whose_doing_it_is_goes_by_quantities_that_are_measured(claim):
     assert claim.otherwise and set(re.findall(r"\{([^}]+)\}", claim.otherwise)) <= measured
 
 
+@pytest.mark.wording
 def test_what_could_not_be_measured_is_counted_apart():
     table = claims()
     n = sum(bool(claim.criterion) for claim in CLAIMS)

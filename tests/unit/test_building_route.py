@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from helpers import simple_rooms as drawn
-from helpers.refusals import refused
+from helpers.refusals import assert_told, refused
 from scanplan.errors import StageError
 from scanplan.lab.buildings import building, building_route
 
@@ -33,7 +33,7 @@ def test_a_planned_way_marks_what_it_visits():
     driven = plan(WITHOUT_WAY, "rooms")
     assert [v["visited"] for _, v in driven.truth if v["kind"] == "room"] == [True]
     assert shapely.LineString(driven.waypoints_m).distance(driven.obstacles_m) >= 0.3
-    assert driven.notes == ("box: planned a way through 1 of 1 rooms",)
+    assert_told(*driven.notes, file="box", value="1 of 1 rooms")
 
 
 def test_a_given_way_is_kept_unless_another_is_asked_for():

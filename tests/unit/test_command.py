@@ -14,7 +14,7 @@ import webbrowser
 import pytest
 from snakemake.cli import get_argument_parser
 
-from helpers.refusals import refused
+from helpers.refusals import assert_told, refused
 from scanplan import interrupts, surroundings
 from scanplan.errors import StageError
 from scanplan.project.code_files import state_version
@@ -196,7 +196,7 @@ def test_a_report_is_opened_at_an_address_of_this_computer_alone(tmp_path, monke
     assert re.fullmatch(r"http://127\.0\.0\.1:\d+/[\w-]{32}/report\.html", address)
     said = capsys.readouterr().out
     assert address in said and f"{tmp_path}/my.bag.corrections.yaml" in said
-    assert "no browser could be started; open the address" in said
+    assert_told(said, value="no browser", remedy="the address")
 
 
 def test_a_recording_is_opened_while_its_run_makes_the_plan(tmp_path, monkeypatch, capsys):

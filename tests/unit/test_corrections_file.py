@@ -259,15 +259,15 @@ def test_half_of_a_character_is_told_with_its_line(tmp_path):
 def test_what_is_no_file_is_told(tmp_path, name):
     path = tmp_path / name
     path.symlink_to(tmp_path / "nowhere")
-    with pytest.raises(StageError, match=f"{name}: is a link that leads nowhere"):
+    with refused(file=name, value="a link"):
         find_beside(tmp_path / "corrections.yaml")
     path.unlink()
     path.mkdir()
-    with pytest.raises(StageError, match=f"{name}: is a folder, expected a file"):
+    with refused(file=name, value="a folder"):
         find_beside(tmp_path / "corrections.yaml")
     path.rmdir()
     os.mkfifo(path)
-    with pytest.raises(StageError, match=f"{name}: is a pipe, expected a file"):
+    with refused(file=name, value="a pipe"):
         find_beside(tmp_path / "corrections.yaml")
 
 

@@ -136,7 +136,7 @@ def test_a_folder_brings_its_settings_and_its_truth(describe, tmp_path):
     found = describe("a", tmp_path / "a.bag")
     assert (
         found.settings["poses"]["keep_every"] == 5
-        and "dataset.yaml and truth.geojson are not used" in found.notes[0]
+        and "dataset.yaml and truth.geojson" in found.notes[0]
     )
     half.unlink()
     for name in ("truth.geojson", "truth_poses.tum"):

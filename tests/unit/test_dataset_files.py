@@ -156,7 +156,7 @@ def test_a_recording_that_is_no_file_is_not_lost_beside_others(tmp_path, put_odd
     put(tmp_path / "a.bag")
     put(tmp_path / "run/metadata.yaml", METADATA), put(tmp_path / "run/a_0.mcap")
     put_odd(tmp_path / name)
-    with pytest.raises(StageError, match=f"{name}: .*; copy it again, or remove it"):
+    with refused(file=name, remedy=("copy it", "remove it")):
         dataset_files.find_files(tmp_path)
 
 

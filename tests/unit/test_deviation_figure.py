@@ -26,6 +26,7 @@ def test_the_length_that_points_show_is_counted_in_cells_of_a_decimetre():
     )
 
 
+@pytest.mark.wording
 def test_the_figure_states_shares_of_classes_and_coverage():
     xy_m = np.array([[0.05, 0.0], [0.15, 0.01], [0.25, 0.03], [0.35, 0.1], [0.5, 0.9]])
     figure = deviation_figure.draw_deviation_figure(xy_m, FACES)
@@ -36,6 +37,7 @@ def test_the_figure_states_shares_of_classes_and_coverage():
     assert figure.get_suptitle().startswith("points show 30.0% of the length")
 
 
+@pytest.mark.wording
 def test_of_no_point_at_all_nothing_is_shown():
     figure = deviation_figure.draw_deviation_figure(np.zeros((0, 2)), FACES)
     assert figure.get_suptitle().startswith("points show 0.0% of the length")

@@ -112,6 +112,7 @@ def test_openings_are_blocks_with_attributes_as_wide_as_they_are():
     assert facts_of(inserts["window-2"])["n_rays"] == 40
 
 
+@pytest.mark.wording
 def test_every_kind_of_opening_has_a_symbol_and_a_meaning():
     openings = floorplan_making.openings() | {
         "type": np.array(["passage", "gap", "glass"], object),

@@ -122,6 +122,7 @@ class TestAreaFigure:
         "hull": ordering([150, 199, 200, 200]),
     }
 
+    @pytest.mark.wording
     def test_it_tells_where_99_percent_are_covered(self):
         said = [
             t.get_text() for t in figures.draw_area_figure(self.ORDERINGS).legends[0].get_texts()
@@ -129,6 +130,7 @@ class TestAreaFigure:
         assert "greedy by cluster hulls: 99 % with 2" in said
         assert "as recorded: 99 % with 4" in said
 
+    @pytest.mark.wording
     def test_it_says_that_hulls_measure_another_area(self):
         note = figures.draw_area_figure(self.ORDERINGS).legends[0].get_title().get_text()
         assert "compare shapes, not heights" in note

@@ -221,6 +221,16 @@ def test_modules_of_wording_are_left_out(tmp_path):
     assert found == ["test_a.py:1 test_it"]
 
 
+def test_words_that_are_given_to_the_code_are_left_out(tmp_path):
+    begin = 'def test_it():\n    """No scan was kept."""\n    '
+    (tmp_path / "test_a.py").write_text(f'{begin}assert run("no scan was kept")\n')
+    (tmp_path / "test_b.py").write_text(
+        f'{begin}said = run("stage: no scan was kept")\n    assert said == "no scan was kept"\n'
+    )
+    found = house_finds.find_prose_tests(house_finds.read_modules(tmp_path))
+    assert found == ["test_a.py:1 test_it"]
+
+
 def test_phrases_of_parameters_count_where_they_are_matched():
     text = '@parametrize("said", ["no scan was kept"])\ndef test_it(said):\n    '
     (matched,) = ast.parse(text + "with raises(E, match=said): read()").body

@@ -112,7 +112,7 @@ def test_wrong_calls_are_refused(scan, cell, weight, n):
 
 @pytest.mark.parametrize("order", [[0, 0], [2], [-1]])
 def test_wrong_orders_are_refused(order):
-    with pytest.raises(ValueError, match="distinct indices below"):
+    with pytest.raises(ValueError, match="distinct indices"):
         coverage([{0: 1}, {1: 1}]).gains(order)
 
 

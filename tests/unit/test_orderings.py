@@ -120,9 +120,8 @@ def test_one_scan_and_no_area(method):
 
 def test_summary():
     found = orderings.order_scans("sequential", columns(), seed=0)
-    assert orderings.summarise_order("sequential", found) == (
-        "sequential, 4 scans, 7.0 m2; 99% at 3 scans, at least 100 % of what any 3 could cover"
-    )
+    told = orderings.summarise_order("sequential", found)
+    assert_told(told, value=("sequential", "4 scans", "7.0 m2", "99% at 3 scans", "100 %"))
     assert orderings.summarise_order("wall_length", order("wall_length", columns())).startswith(
         "wall_length, 4 scans, 14.0 m;"
     )
@@ -234,7 +233,7 @@ def test_an_order_depends_on_the_settings_that_the_workflow_gives_it_and_on_no_o
 
 
 def test_refuses_a_random_order_without_a_seed():
-    with pytest.raises(ValueError, match="needs a seed"):
+    with pytest.raises(ValueError, match="seed"):
         order("random", columns(), seed=None)
 
 

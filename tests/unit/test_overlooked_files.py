@@ -30,10 +30,10 @@ def test_what_stands_beside_a_single_recording_is_told(tmp_path):
     )
     (note,) = overlooked_files.list_overlooked(bag)
     assert_told(note, file=("dataset.yaml", "truth.geojson", "truth_poses.tum"))
-    assert note.endswith(f"give the folder {tmp_path} as the dataset")
+    assert_told(note, remedy=f"folder {tmp_path}")
     put(tmp_path / "run" / "metadata.yaml", METADATA), put(tmp_path / "run" / "x_0.mcap")
     (note,) = overlooked_files.list_overlooked(tmp_path / "run")
-    assert "the dataset is run alone" in note
+    assert_told(note, value="run alone")
 
 
 @pytest.mark.parametrize(("there", "missing"), [(0, 1), (1, 0)])
@@ -41,8 +41,8 @@ def test_half_a_truth_is_told(tmp_path, there, missing):
     put(tmp_path / "a.bag")
     put(tmp_path / dataset_files.TRUTH_FILES[there])
     (note,) = overlooked_files.list_overlooked(tmp_path)
-    assert note.startswith(f"{tmp_path / dataset_files.TRUTH_FILES[there]}: is not used")
-    assert f"{dataset_files.TRUTH_FILES[missing]} is missing" in note
+    is_there, is_missing = (dataset_files.TRUTH_FILES[place] for place in (there, missing))
+    assert_told(note, file=tmp_path / is_there, value=f"{is_missing} is missing")
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_files_of_nearly_a_name_that_is_read_are_told(tmp_path, name, read):
     put(tmp_path / "a.bag")
     put(tmp_path / name)
     (note,) = overlooked_files.list_overlooked(tmp_path)
-    assert note == f"{tmp_path}: {name} is not used; {read}, rename it"
+    assert_told(note, file=(tmp_path, name), remedy=(read, "rename it"))
 
 
 def test_links_and_folders_of_nearly_a_name_are_told(tmp_path):
@@ -69,4 +69,5 @@ def test_links_and_folders_of_nearly_a_name_are_told(tmp_path):
     (tmp_path / "corrections.yml").symlink_to("nowhere")
     (tmp_path / "dataset.yml").mkdir()
     settings, corrections = overlooked_files.list_overlooked(tmp_path)
-    assert "dataset.yml is not used" in settings and "corrections.yml is" in corrections
+    assert_told(settings, file="dataset.yml")
+    assert_told(corrections, file="corrections.yml")

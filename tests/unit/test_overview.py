@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 import shapely
 
 from scanplan.report import overview
@@ -82,6 +83,7 @@ def test_tables_of_an_interrupted_run_are_no_plan_to_look_at(tmp_path):
     assert states_of(rows) == [overview.MISSING] and math.isnan(rows[0]["area_m2"])
 
 
+@pytest.mark.wording
 def test_the_page_says_all_and_takes_names_for_text(tmp_path, project_root):
     folder = project_root / "workflow/report/page"
     sources = {name: (folder / name).read_text() for name in ("overview.html.j2", "overview.css")}

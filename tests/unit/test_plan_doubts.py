@@ -109,6 +109,7 @@ def test_a_place_is_told_by_the_side_of_its_room(way, side):
     assert "outside" in doubt_words.say_where(made, -1, middle_m)
 
 
+@pytest.mark.wording
 def test_what_was_nearly_drawn_is_listed_apart_the_likeliest_first():
     near = [Nearly(kind, np.array([(1.0, 0.0), (2.0, 0.0)]), p)
             for kind, p in (("window", 0.3), ("wall", 0.45))]  # fmt: skip
@@ -138,6 +139,7 @@ def test_a_note_holds_what_was_nearly_drawn(tmp_path):
 
 @pytest.mark.parametrize("about", ["", "existence", "kind", "place", "outline", "end", "width"])
 @pytest.mark.parametrize("noun", ["wall", "door", "gap", "glass", "room", "face"])
+@pytest.mark.wording
 def test_every_doubt_is_a_question_that_says_where(noun, about):
     size_m = np.nan if noun == "room" else 0.9
     asked = doubt_words.ask(noun, about, size_m, "at the top of Room 1")

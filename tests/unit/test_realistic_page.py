@@ -108,6 +108,7 @@ class TestPage:
         assert all(word not in text for word in ("http", "src=", "href=", "@import", "url("))
         assert "<title>Plans of &lt;this&gt;</title>" in text
 
+    @pytest.mark.wording
     def test_the_worst_floor_is_first_and_one_without_a_plan_before_it(self, tmp_path):
         text = self.two(tmp_path)
         assert text.index("<b>bad, tuning") < text.index("<b>good, tuning")
@@ -118,6 +119,7 @@ class TestPage:
         assert "1 floors without a plan" in text and "<li>none: a &lt; b</li>" in text
         assert text.count("<svg") == 2
 
+    @pytest.mark.wording
     def test_errors_are_told_by_how_much_of_all_there_is_is_wrong(self, tmp_path):
         text = self.two(tmp_path)
         # one of three rooms that count; 2 m of the 40 m of wall that both plans draw
@@ -127,6 +129,7 @@ class TestPage:
         assert "<td>wall: open leaf</td><td>1</td><td>2 m</td><td>5%</td><td>0%</td>" in text
         assert text.index("room: several in one") < text.index("wall: open leaf")
 
+    @pytest.mark.wording
     def test_a_floor_is_told_by_its_commonest_errors(self, tmp_path):
         more = [Element("stretch", LINE, "furniture")] * 3 + [Element("room", ROOM, "part")] * 2
         more += [Element("column", ROOM, "missed")] * 4
@@ -147,6 +150,7 @@ class TestPage:
         assert "<td>tuning</td><td>1</td><td>1.000</td>" in text
         assert "<td>reporting museum</td><td>1</td><td>0.500</td>" in text
 
+    @pytest.mark.wording
     def test_a_run_without_any_plan_has_a_page(self, tmp_path):
         row = measured("none", 0.0, "no stage has run")
         del row["wall_correctness_010"]
@@ -159,6 +163,7 @@ class TestPage:
         assert proposed and all(word in words for word in proposed)
 
 
+@pytest.mark.wording
 def test_figures_are_means_of_what_is_known_and_failures_are_named(capsys):
     rows = [measured("a", 1.0), measured("b", 0.5), measured("c", np.nan, "no scan is kept")]
     rows.append(measured("d", 0.25, half="reporting"))

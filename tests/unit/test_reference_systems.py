@@ -29,7 +29,7 @@ def test_systems_in_degrees_are_refused(kinds):
     in_degrees = [code for code, kind in kinds.items() if kind == "geodetic_crs"]
     assert len(in_degrees) > 1000
     assert {find_fault(f"EPSG:{code}") for code in in_degrees} == {find_fault("EPSG:4326")}
-    assert "is a system in degrees" in find_fault("EPSG:4326")
+    assert "degrees" in find_fault("EPSG:4326")
 
 
 @pytest.mark.parametrize("code", ["0", "1023", "32768", "99999999999999999999", "9" * 5000])

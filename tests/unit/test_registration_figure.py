@@ -86,6 +86,7 @@ def test_a_registration_without_links_is_drawn(results):
     assert len(figure.axes) == 1
 
 
+@pytest.mark.wording
 def test_loops_are_told_apart(results):
     registration = tables.read_table(results / "registration.parquet", schemas.REGISTRATION)
     links = {

@@ -42,6 +42,7 @@ def test_no_point_makes_a_clear_picture():
     assert pixels(np.empty((0, 3)))[0] == []
 
 
+@pytest.mark.wording
 def test_doubts_are_taken_where_the_tables_have_them():
     rooms = floorplan_making.rooms() | {"closed": np.array([True, False])}
     openings = floorplan_making.openings() | {

@@ -83,7 +83,7 @@ def test_a_message_larger_than_its_chunk(recording):
 def test_a_message_that_the_file_does_not_hold(tmp_path):
     path = tmp_path / "short"
     path.write_bytes(b"abc")
-    with path.open("rb") as file, pytest.raises(ValueError, match="5 bytes is cut short to 3"):
+    with path.open("rb") as file, pytest.raises(ValueError, match=r"5 bytes .* 3"):
         rosbag1_messages.StoredMessage(file.fileno(), 0, 5, b"").read()
 
 

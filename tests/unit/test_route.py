@@ -10,7 +10,6 @@ import shapely
 
 from helpers import simple_rooms as drawn
 from helpers.refusals import refused
-from scanplan.errors import StageError
 from scanplan.lab.buildings import building, hallways, route
 
 WIDE = [[-0.1, -0.1], [12.1, -0.1], [12.1, 6.1], [-0.1, 6.1], [-0.1, -0.1]]
@@ -104,9 +103,7 @@ def test_the_same_floor_gives_the_same_way():
 
 @pytest.mark.parametrize("start_m", [(0.1, 3.0), (6.0, 6.1), (20.0, 3.0)])
 def test_a_start_in_a_wall_is_refused(start_m):
-    with pytest.raises(
-        StageError, match=rf"floor\.geojson: the start \({start_m[0]:g}, .* move it to free floor"
-    ):
+    with refused(file="floor.geojson", value=f"({start_m[0]:g}", remedy="move it"):
         planned(floor(), start_m=start_m)
 
 

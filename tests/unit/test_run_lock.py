@@ -165,7 +165,7 @@ def test_a_run_that_takes_our_lock_a_little_later_is_told_in_our_line(persistenc
     taken = []
     first = threading.Timer(0.05, lambda: taken.append(run_lock.lock_folder()))
     first.start()
-    with pytest.raises(SystemExit, match="another run is at work in this folder"):
+    with pytest.raises(SystemExit, match="another run"):
         persistence().lock().__enter__()
     first.join()
     taken.pop().close()

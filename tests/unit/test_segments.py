@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from helpers import toy_rooms
+from helpers.refusals import assert_told
 from scanplan.extraction import segments
 from scanplan.store import schemas, tables
 
@@ -161,7 +162,5 @@ def test_table_without_any_wall(tmp_path):
         len(tables.read_table(tmp_path / "walls.parquet", schemas.WALLS, allow_empty=True)["wall"])
         == 0
     )
-    assert (
-        segments.summarise_segments(columns, 1, 12.0)
-        == "1 scans, 0 walls, no wall at all, 12 ms a scan"
-    )
+    told = segments.summarise_segments(columns, 1, 12.0)
+    assert_told(told, value=("1 scans", "0 walls", "12 ms a scan"))

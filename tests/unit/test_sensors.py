@@ -77,7 +77,7 @@ def test_a_whole_turn_has_no_beam_twice():
     ],
 )
 def test_no_sensor(make, changes):
-    with pytest.raises(ValueError, match="are no sensor"):
+    with pytest.raises(ValueError, match="no sensor"):
         make(replace(COMMON, **changes))
 
 

@@ -300,7 +300,7 @@ def test_no_least_may_reach_its_most(defaults, schema):
         both = merge_settings(with_value(least, 0.75), with_value(most, 0.75))
         with pytest.raises(StageError) as caught:
             settings_of_dataset(defaults, [Layer("a.yaml", both)], schema)
-        assert f"a.yaml: {most}: 0.75 must be above {least} (0.75)" in str(caught.value)
+        assert_told(str(caught.value), file="a.yaml", value=("0.75", f"{least} (0.75"), key=most)
 
 
 def test_limits_may_cross_in_a_file_that_another_mends(defaults, schema):

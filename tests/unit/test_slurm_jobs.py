@@ -39,7 +39,7 @@ def test_only_this_folders_jobs_are_listed_oldest_first(squeue):
 
 def test_a_job_is_explained_once_and_not_where_a_second_try_went_well(squeue):
     (line,) = explain_ends(list_jobs(HERE), known=[])
-    assert line.startswith("register_scans floor: its Slurm job 9 ran into its time limit of 2:00;")
+    assert_told(line, file="register_scans floor", value=("job 9", "2:00"))
     assert list(explain_ends(list_jobs(HERE), known=["9"])) == []
     (lost,) = explain_ends(list_jobs(HERE), known=["9", "11", "12"])
     assert_told(lost, value=("job 10", "200M"))
@@ -61,9 +61,8 @@ def test_jobs_that_do_not_end_stop_the_run(squeue, monkeypatch):
 
 def test_a_cause_names_its_limit():
     job = SlurmJob("1", "TIMEOUT", "TimeLimit", "2:00", "500M", "rule_plan", HERE)
-    assert job.explain_end() == (
-        "ran into its time limit of 2:00; raise it with --set-resources RULE:runtime=MIN"
-    )
+    remedy = "--set-resources RULE:runtime=MIN"
+    assert_told(job.explain_end(), value="time limit of 2:00", remedy=remedy)
 
 
 def test_what_the_profile_lacks_is_said(monkeypatch):
@@ -72,7 +71,7 @@ def test_what_the_profile_lacks_is_said(monkeypatch):
         slurm_jobs.find_status_command()
     monkeypatch.setattr(slurm_jobs.importlib.util, "find_spec", lambda name: object())
     monkeypatch.setattr(slurm_jobs.shutil, "which", lambda name: None)
-    with pytest.raises(SystemExit, match="there is no sbatch"):
+    with pytest.raises(SystemExit, match="no sbatch"):
         slurm_jobs.find_status_command()
 
 
@@ -88,7 +87,7 @@ def test_accounting_is_asked_where_it_is_kept(monkeypatch, kept, command):
 
 
 def test_a_controller_that_is_down_is_one_line():
-    with pytest.raises(SystemExit, match=r"scanplan: false: .*is Slurm's controller at work"):
+    with pytest.raises(SystemExit, match=r"scanplan: false: .*controller"):
         slurm_jobs._ask("false")
 
 

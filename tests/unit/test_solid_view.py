@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from helpers import floorplan_making, report_making
 from helpers.floorplan_making import HEIGHT_M, plan
+from helpers.refusals import refused
 from scanplan.report import sent_points, solid_view
 from scanplan.report.chart import MARGIN_M
 
@@ -123,6 +124,7 @@ def test_what_heights_follow_from_is_said(seen, told):
     assert told in view_of(NOTHING, **seen)["heights"]
 
 
+@pytest.mark.wording
 def test_of_scans_in_one_plane_heights_are_not_known():
     unseen = dict.fromkeys(("z_min_m", "z_max_m", "top_m"), np.full(6, np.nan))
     walls = floorplan_making.walls()
@@ -156,7 +158,7 @@ def test_more_points_than_a_browser_draws_are_thinned(tmp_path, monkeypatch):
 
 def test_a_page_that_states_no_points_is_told(tmp_path):
     (tmp_path / "report.html").write_text("of an earlier release")
-    with pytest.raises(Exception, match=r"report\.html: states no points; run the dataset again"):
+    with refused(file="report.html", remedy="dataset again"):
         sent_points.write_points(tmp_path, io.BytesIO())
 
 

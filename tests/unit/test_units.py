@@ -5,7 +5,7 @@ import pytest
 
 from helpers import bag_making, e57_making, las_making, small_flat
 from helpers.default_settings import SCHEMA, SETTINGS
-from helpers.refusals import refused
+from helpers.refusals import assert_told, refused
 from scanplan.exports import reduced_bag, selected_bag
 from scanplan.project import dataset_files, stage_settings
 from scanplan.project.settings import merge_settings
@@ -94,7 +94,7 @@ def test_the_units_are_said(tmp_path, caplog):
     write_bag(tmp_path, 0.01, 1.0)
     with caplog.at_level("INFO"):
         read(tmp_path, cloud_unit="cm")
-    assert "clouds are in cm, poses and transforms in m" in caplog.text
+    assert_told(caplog.text, value=("clouds", "in cm", "transforms in m"))
 
 
 def test_scans_that_are_chosen_are_read_again_alike(tmp_path):

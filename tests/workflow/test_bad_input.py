@@ -8,6 +8,7 @@ import pytest
 
 from helpers import bag_making
 from helpers.project_copy import Project
+from helpers.refusals import assert_told
 
 pytestmark = pytest.mark.workflow
 
@@ -116,9 +117,7 @@ def test_a_truth_that_is_not_used_is_told(project, tmp_path):
     (tmp_path / name / "truth.geojson").touch()
     result = project.run("--dry-run", "--quiet", "--config", f"dataset={name}")
     assert result.returncode == 0
-    assert (
-        "scanplan: half/truth.geojson: is not used, as truth_poses.tum is missing" in result.stderr
-    )
+    assert_told(result.stderr, file=("half/truth.geojson", "truth_poses.tum"))
 
 
 def written(folder, entries):
@@ -156,7 +155,8 @@ def test_evaluation_without_truth(project, tmp_path):
         output = result.stdout + result.stderr
         assert result.returncode != 0 and "Traceback" not in output
         (line,) = [line for line in output.splitlines() if line.startswith("scanplan: ")]
-        assert "untrue: has no truth" in line and output.splitlines()[-1] == line
+        assert_told(line, file="untrue", value="no truth")
+    assert output.splitlines()[-1] == line
 
 
 def test_settings_that_unfit_the_thesiss_surveys_matter_to_them_alone(project, tmp_path):
@@ -165,10 +165,8 @@ def test_settings_that_unfit_the_thesiss_surveys_matter_to_them_alone(project, t
     other = project.run("--dry-run", "all", *settings)
     assert other.returncode == 0, other.stderr
     result = project.run("--dry-run", "thesis", *settings)
-    assert (
-        result.returncode != 0
-        and "scanplan: simulate.building: nowhere is neither" in result.stderr
-    )
+    assert result.returncode != 0
+    assert_told(result.stderr, key="simulate.building", value="nowhere")
 
 
 def test_two_cloud_topics(project, tmp_path):
@@ -224,7 +222,7 @@ def test_what_is_whole_of_a_truncated_bag_is_read_where_that_is_asked_for(projec
     (tmp_path / "cut/dataset.yaml").write_text("input: {salvage: true}")
     result = project.run("results/cut/poses.parquet", "--config", f"dataset={name}")
     assert result.returncode == 0, result.stderr
-    assert "cut/run.bag: from a damaged recording" in result.stderr
+    assert_told(result.stderr, file="cut/run.bag", value="damaged recording")
 
 
 def test_settings_that_are_code_are_refused_before_they_are_executed(project, tmp_path):
@@ -233,10 +231,8 @@ def test_settings_that_are_code_are_refused_before_they_are_executed(project, tm
     )
     result = project.run("--dry-run", "--configfile", "tests/data/tiny.yaml", "evil.yaml")
     assert result.returncode == 1 and not (tmp_path / "executed").exists()
-    assert result.stderr.splitlines()[-1] == (
-        "scanplan: evil.yaml: __use_yte__: has Snakemake execute what the file says;"
-        " settings are data, drop it"
-    )
+    last = result.stderr.splitlines()[-1]
+    assert_told(last, file="evil.yaml", key="__use_yte__", remedy="drop it")
 
 
 def test_a_recording_that_an_older_one_replaced_is_read_anew(project, tmp_path):

@@ -43,6 +43,7 @@ def test_the_table_over_all_says_what_became_of_each(campus):
 
 
 @pytest.mark.skipif(browser.find() is None, reason="no Chromium here")
+@pytest.mark.wording
 def test_the_page_over_all_shows_a_plan_and_the_fault(campus, tmp_path):
     with browser.Page(tmp_path) as page:
         page.open((campus.folder / "results/summary.html").as_uri())
