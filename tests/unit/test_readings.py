@@ -75,6 +75,7 @@ def nodding(degrees):
         (TRUE, lambda cloud, _: cloud / 0.3048, "ranges are in feet"),
         (TRUE, nodding(-8), "pitch of some 10 degrees"),
         (TRUE, nodding(8), "pitch of some -10 degrees"),
+        (TRUE, nodding(4), "pitch of some -5 degrees"),
         (np.repeat(TRUE[:1], 20, axis=0), None, "stood still"),
     ],
 )
