@@ -110,3 +110,21 @@ def test_a_sample_is_of_those_rays_and_no_larger_than_asked(seed, most):
     points, scan = found.gather_rows(low, high, numbers)
     assert sorted(points.tolist()) == sorted(found.xyz_m[sorted(every)].tolist())
     assert np.bincount(scan, minlength=3).sum() == len(every)
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 10**6))
+def test_no_ray_that_ends_in_a_box_is_missed_from_wherever_it_comes(seed):
+    rng = np.random.default_rng(seed)
+    low_m, size_m = rng.uniform(-2, 2, 2), rng.uniform(0.01, 3, 2)
+    sensors_m = rng.uniform(-3, 3, (4, 3))
+    found = rays(*[(sensor_m, rng.uniform(-4, 4, (60, 3))) for sensor_m in sensors_m])
+    xyz_m, scan = found.gather_towards(low_m, low_m + size_m)
+
+    def ends_in_it(ends_m):
+        return ((ends_m[:, :2] > low_m) & (ends_m[:, :2] < low_m + size_m)).all(axis=1)
+
+    assert ends_in_it(xyz_m).sum() == ends_in_it(found.xyz_m).sum()
+    of_ray = dict(zip(map(tuple, found.xyz_m), found.scan.tolist(), strict=True))
+    assert [of_ray[tuple(end_m)] for end_m in xyz_m] == scan.tolist()
+    assert len(set(map(tuple, xyz_m))) == len(xyz_m)

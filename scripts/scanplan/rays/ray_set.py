@@ -171,6 +171,32 @@ class RaySet:
         points = [self.xyz_m[begin:stop] for begin, stop in runs]
         return np.concatenate([np.empty((0, 3)), *points]), np.repeat(number, high - low)
 
+    def gather_towards(self, low_m: FloatArray, high_m: FloatArray) -> tuple[FloatArray, IntArray]:
+        """Return ends (n, 3) and scans (n,) of the rays that go towards a box on the floor.
+
+        From within they are all around.
+
+        Parameters
+        ----------
+        low_m, high_m : (2,) float64
+            Corners of the box.
+        """
+        x_m, y_m = np.stack([low_m, high_m], axis=1)
+        corners_m = np.column_stack([x_m[[0, 1, 1, 0]], y_m[[0, 0, 1, 1]]])
+        way_m = corners_m - self.sensors_m[:, None, :2]
+        middle_m = way_m.mean(axis=1)[:, None]
+        ahead = (middle_m * way_m).sum(axis=2)
+        aside = middle_m[..., 0] * way_m[..., 1] - middle_m[..., 1] * way_m[..., 0]
+        turn_rad = np.arctan2(aside, ahead)
+        is_outside = (ahead > 0).all(axis=1)
+        (outside,), (inside,) = is_outside.nonzero(), (~is_outside).nonzero()
+        ends_m = corners_m[np.stack([turn_rad.argmin(axis=1), turn_rad.argmax(axis=1)])]
+        low, high = self.rows_between(ends_m[:, outside], outside)
+        none = self.first[inside]
+        low = np.hstack([low, [none, none]])
+        high = np.hstack([high, [self.first[inside + 1], none]])
+        return self.gather_rows(low, high, np.concatenate([outside, inside]))
+
     def sample_rows_between(
         self, ends: FloatArray, scans: IntArray, most: int
     ) -> tuple[IntArray, IntArray]:

@@ -200,7 +200,7 @@ def _open_recordings(
         survey = recorded_survey.BagSurvey(
             opened, **topics_and_frame, reading=reading, known_t_ns=known_t_ns
         )
-        return survey if known_t_ns else nodding_sweeps.take_nods(survey)
+        return nodding_sweeps.take_nods(survey) if known_t_ns is None else survey
     from scanplan.recordings import scanner_drives
 
     surveys = [

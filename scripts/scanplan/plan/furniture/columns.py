@@ -140,21 +140,7 @@ def _returns_above(outline: Polygon, rays: RaySet) -> tuple[FloatArray, IntArray
     """Return the returns (n, 3) over an outline, heights above the floor, and their scans (n,)."""
     # no return on an edge is to be missed by rounding
     low_m, high_m = shapely.bounds(outline).reshape(2, 2) + np.array([[-SHORTEST_M], [SHORTEST_M]])
-    corners_m = shapely.get_coordinates(shapely.box(*low_m, *high_m))[:-1]
-    way_m = corners_m - rays.sensors_m[:, None, :2]
-    middle_m = way_m.mean(axis=1)[:, None]
-    ahead = (middle_m * way_m).sum(axis=2)
-    aside = middle_m[..., 0] * way_m[..., 1] - middle_m[..., 1] * way_m[..., 0]
-    turn_rad = np.arctan2(aside, ahead)
-    is_outside = (ahead > 0).all(axis=1)
-    (outside,), (inside,) = is_outside.nonzero(), (~is_outside).nonzero()
-    ends_m = corners_m[np.stack([turn_rad.argmin(axis=1), turn_rad.argmax(axis=1)])]
-    low, high = rays.rows_between(ends_m[:, outside], outside)
-    # from within they are all around
-    first = rays.first
-    low = np.hstack([low, np.stack([first[inside], first[inside]])])
-    high = np.hstack([high, np.stack([first[inside + 1], first[inside]])])
-    xyz_m, scan = rays.gather_rows(low, high, np.concatenate([outside, inside]))
+    xyz_m, scan = rays.gather_towards(low_m, high_m)
     xyz_m = xyz_m - (0.0, 0.0, rays.ground_z_m)
     is_over = shapely.contains_xy(outline, xyz_m[:, :2]) & (xyz_m[:, 2] > SKIRTING_M)
     return xyz_m[is_over], scan[is_over]
