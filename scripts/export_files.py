@@ -202,13 +202,13 @@ def _way_layers(registered: RegisteredScans, factor: float) -> dict[str, geopack
     places_m = factor * registered.map_from_sensor[:, :2, 3]
     # one scan alone is a way of no length
     way_m = places_m if len(places_m) > 1 else np.repeat(places_m, 2, axis=0)
-    way = np.array([shapely.LineString(way_m)], object)
+    track = np.array([shapely.LineString(way_m)], object)
     scans: element_tables.Rows = {
         "scan_id": registered.scan_ids.tolist(),
         "t_ns": registered.t_ns.tolist(),
     }
     return {
-        "trajectory": geopackage.Layer("LINESTRING", way, {"n_scans": [len(places_m)]}),
+        "trajectory": geopackage.Layer("LINESTRING", track, {"n_scans": [len(places_m)]}),
         "scans": geopackage.Layer("POINT", np.asarray(shapely.points(places_m), object), scans),
     }
 

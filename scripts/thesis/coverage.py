@@ -112,16 +112,16 @@ def seen_polygons(faces: TrueFaces, places_m: FloatArray, *, max_range_m: float)
     ]
     # neighbouring corners that coincide make an outline touch itself; a line has no area
     touching = np.array([shapely.Polygon(outline) for outline in outlines])
-    seen = overlays.repair_areas(touching, method="structure", keep_collapsed=False)
+    seen_areas = overlays.repair_areas(touching, method="structure", keep_collapsed=False)
     discs = overlays.buffer_shapes(shapely.points(places_m), max_range_m, quad_segs=8)
-    return np.asarray(overlays.intersect_areas(seen, discs))
+    return np.asarray(overlays.intersect_areas(seen_areas, discs))
 
 
-def polygon_iou(polygons: Array, seen: Array) -> FloatArray:
+def polygon_iou(polygons: Array, seen_areas: Array) -> FloatArray:
     """Return intersection over union of polygons (n,) with what their scans see (n,).
 
     It is 0 where both are empty.
     """
-    shared_m2 = np.asarray(shapely.area(overlays.intersect_areas(polygons, seen)))
-    joint_m2 = np.asarray(shapely.area(overlays.unite_each(polygons, seen)))
+    shared_m2 = np.asarray(shapely.area(overlays.intersect_areas(polygons, seen_areas)))
+    joint_m2 = np.asarray(shapely.area(overlays.unite_each(polygons, seen_areas)))
     return np.divide(shared_m2, joint_m2, out=np.zeros(len(shared_m2)), where=joint_m2 > 0)

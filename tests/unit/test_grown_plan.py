@@ -120,9 +120,9 @@ def test_what_one_survey_alone_saw_is_as_likely_to_have_changed_as_what_both_did
     found = rate_contributions(a.plan, [a, b], [0, 7 * day_ns], [changes])
     walls = {of.number: of for of in found if of.table == "wall"}
     # the far wall in the east, and that between both
-    assert walls[1].seen == (0,) and walls[1].is_stale and walls[1].age_days == 7
+    assert walls[1].seen_by == (0,) and walls[1].is_stale and walls[1].age_days == 7
     assert walls[1].p_stands == pytest.approx(1 - (1 + 1) / (1 / CHANGED + 2))
-    assert walls[4].seen == (0, 1) and walls[4].p_stands == 1 and walls[4].age_days == 0
+    assert walls[4].seen_by == (0, 1) and walls[4].p_stands == 1 and walls[4].age_days == 0
     east_m, west_m, both_m = sum_lengths_m(found)
     assert east_m == pytest.approx(walls[1].shape.length) and west_m == walls[3].shape.length
     assert east_m + west_m + both_m == pytest.approx(a.plan.lengths_m.sum())
@@ -133,7 +133,7 @@ def test_a_door_is_seen_by_whoever_looked_at_it():
     (door,) = [
         of for of in rate_contributions(a.plan, [a, b], [0, 1], [[]]) if of.table == "opening"
     ]
-    assert door.shares[0] == 1.0 and 1 in door.seen
+    assert door.shares[0] == 1.0 and 1 in door.seen_by
     assert not door.is_stale and door.p_stands == 1
 
 
@@ -193,8 +193,8 @@ def test_a_third_survey_is_compared_with_the_plan_of_the_two_before_it():
     assert [len(of) for of in moved] == [1, 0]
     walls = {of.number: of for of in grown.contributions if of.table == "wall"}
     # that in the east was seen by the first two, the one that was moved not by the first
-    assert walls[1].seen == (0, 1) and walls[1].age_days == pytest.approx(11.5, abs=0.2)
-    assert walls[4].seen == (1, 2) and not walls[4].is_stale
+    assert walls[1].seen_by == (0, 1) and walls[1].age_days == pytest.approx(11.5, abs=0.2)
+    assert walls[4].seen_by == (1, 2) and not walls[4].is_stale
     assert growth_table.summarise_growth(grown)[-1].startswith("not seen by the latest survey: ")
 
 

@@ -382,3 +382,56 @@ def test_a_silent_parameter_is_found(tmp_path):
     (tmp_path / "planted.py").write_text(text)
     found = house_finds.find_silent_parameters(house_finds.read_modules(tmp_path))
     assert found == ["planted.py:1 a", "planted.py:1 b, c"]
+
+
+def annotated(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield names of parameters, fields and functions without parameters, with their types."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg) and node.annotation:
+            yield node.arg, ast.unparse(node.annotation)
+        elif isinstance(node, ast.AnnAssign):
+            name = getattr(node.target, "id", None) or getattr(node.target, "attr", "")
+            yield name, ast.unparse(node.annotation)
+        elif isinstance(node, ast.FunctionDef) and node.returns and len(node.args.args) <= 1:
+            yield node.name, ast.unparse(node.returns)
+
+
+def stated_types() -> dict[str, set[str]]:
+    """Return the types that the glossary says names of one meaning have."""
+    rows = re.findall(r"^\| (`.+?`) \| (.+) \|$", section("Glossary"), re.M)
+    return {
+        name: {of.replace("\\|", "|") for of in re.findall(r"`(.+?)`", types)}
+        for names, types in rows
+        for name in re.findall(r"`(\w+)`", names)
+    }
+
+
+def test_names_of_one_meaning_have_the_types_that_the_glossary_says():
+    stated = stated_types()
+    wrong = {
+        f"{module.path}: {name}: {of}"
+        for module in code()
+        for name, of in annotated(module.tree)
+        if of not in stated.get(name, {of})
+    }
+    assert len(stated) > 10
+    assert wrong == set()
+
+
+def test_every_name_of_one_meaning_occurs():
+    used = {name for module in code() for name, _ in annotated(module.tree)}
+    used |= {
+        node.id
+        for tree in trees().values()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name)
+    }
+    assert set(stated_types()) <= used
+
+
+@pytest.mark.parametrize(
+    "planted", ["def find(seen: Polygon): ...", "seen: int = 0", "def seen(self) -> Polygon: ..."]
+)
+def test_a_name_of_another_meaning_is_found(planted):
+    ((name, of),) = annotated(ast.parse(planted))
+    assert name == "seen" and of not in stated_types()["seen"]

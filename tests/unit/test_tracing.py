@@ -16,7 +16,7 @@ SELECTION = tracing._FaceSelection(_SETTINGS.merge, _SETTINGS.pairs)
 
 
 def claims_on_first(*found):
-    return tracing.owned_intervals([found[0].seen], list(found))[0]
+    return tracing.owned_intervals([found[0].observation], list(found))[0]
 
 
 def test_a_wall_that_crosses_claims_what_is_beside_it():

@@ -127,9 +127,9 @@ def warn_of_others(tie: FrameTie) -> str:
         f"{math.degrees(motion.yaw_rad - tie.fit.motion.yaw_rad) % 360:.0f}° ({share:.0%} agree)"
         for motion, share in tie.others
     ]
-    ways = say_count(len(turns), "other way")
+    others = say_count(len(turns), "other way")
     remedy = "hold the drawing against the floor, or survey what tells its sides apart"
-    return f"the floor looks alike in {ways}, turned by {', '.join(turns)}; {remedy}"
+    return f"the floor looks alike in {others}, turned by {', '.join(turns)}; {remedy}"
 
 
 def warn_of_planes(compared: Comparison) -> str:

@@ -36,7 +36,7 @@ class Contribution:
     shape : shapely geometry
     shares : tuple of float
         Which part of it each survey saw, the earliest first.
-    seen : tuple of int
+    seen_by : tuple of int
         The surveys that saw it.
     age_days : float
         From then to the latest survey.
@@ -48,19 +48,19 @@ class Contribution:
     number: int
     shape: BaseGeometry
     shares: tuple[float, ...]
-    seen: tuple[int, ...]
+    seen_by: tuple[int, ...]
     age_days: float
     p_stands: float
 
     @property
     def is_alone(self) -> bool:
         """Whether one survey alone saw it."""
-        return len(self.seen) == 1
+        return len(self.seen_by) == 1
 
     @property
     def last(self) -> int:
         """The latest survey that saw it."""
-        return self.seen[-1]
+        return self.seen_by[-1]
 
     @property
     def is_stale(self) -> bool:
@@ -94,10 +94,10 @@ def rate_contributions(
     for table, list_shares in _TABLES.items():
         for number, shape, shares in list_shares(plan, surveys):
             least = _SEEN * max(shares)
-            seen = tuple(row for row, share in enumerate(shares) if share >= least)
-            age_days = max(ended_ns[-1] - ended_ns[seen[-1]], 0) / _NS_PER_DAY
-            p_stands = math.prod(of[table] for of in stay[seen[-1] :])
-            shown = Contribution(table, number, shape, tuple(shares), seen, age_days, p_stands)
+            seen_by = tuple(row for row, share in enumerate(shares) if share >= least)
+            age_days = max(ended_ns[-1] - ended_ns[seen_by[-1]], 0) / _NS_PER_DAY
+            p_stands = math.prod(of[table] for of in stay[seen_by[-1] :])
+            shown = Contribution(table, number, shape, tuple(shares), seen_by, age_days, p_stands)
             found.append(shown)
     return found
 
@@ -119,13 +119,13 @@ _Shares = Iterator[tuple[int, BaseGeometry, list[float]]]
 
 def _share_walls(plan: FloorPlan, surveys: Sequence[Survey]) -> _Shares:
     """Yield which part of the length of each wall rays of each survey end at."""
-    seen: dict[int, list[BoolArray]] = {}
+    answered: dict[int, list[BoolArray]] = {}
     for wall in wall_changes.list_walls(Survey(plan, surveys[0].sight, surveys[0].motion)):
         looks = [s.sight.look_at(wall.line, wall.span_m, wall.half_m) for s in surveys]
         ends = [(of.hits > 0) & (of.passes <= STRAY_SHARE * (of.hits + of.passes)) for of in looks]
-        seen.setdefault(wall.number, []).append(np.stack([of.any(axis=1) for of in ends]))
+        answered.setdefault(wall.number, []).append(np.stack([of.any(axis=1) for of in ends]))
     for number, axis in zip(plan.walls["wall"].tolist(), plan.axes, strict=True):
-        shares = np.concatenate(seen[number], axis=1).mean(axis=1)
+        shares = np.concatenate(answered[number], axis=1).mean(axis=1)
         yield number, axis, shares.tolist()
 
 

@@ -37,9 +37,9 @@ class PlaneMotion:
         """
         return xy_m @ self.rotation.T + np.array([self.x_m, self.y_m])
 
-    def turn(self, ways: FloatArray) -> FloatArray:
+    def turn(self, directions: FloatArray) -> FloatArray:
         """Return directions (..., 2) turned."""
-        return ways @ self.rotation.T
+        return directions @ self.rotation.T
 
     def then(self, other: "PlaneMotion") -> "PlaneMotion":
         """Return this motion with another after it, its yaw in -pi to pi."""

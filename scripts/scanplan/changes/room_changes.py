@@ -100,9 +100,9 @@ def _places(wall: Change) -> BaseGeometry:
 
 
 def _judge_alone(
-    number: int, area: BaseGeometry, seen: BaseGeometry, walls: Sequence[Change]
+    number: int, area: BaseGeometry, seen_area: BaseGeometry, walls: Sequence[Change]
 ) -> Change:
-    share = overlays.intersect_areas(area, seen).area / area.area
+    share = overlays.intersect_areas(area, seen_area).area / area.area
     if share < _SEEN:
         return Change("room", number, -1, NOT_SEEN, math.nan, area)
     # a wall that moved parts the same rooms
@@ -208,8 +208,8 @@ def _join_moved(gone: list[Change], new: list[Change], walls: BaseGeometry) -> l
             apart_m = old.shape.centroid.distance(other.shape.centroid)
             is_one = old.verdict == GONE and other.verdict == NEW
             # nobody carries it through a wall
-            way = shapely.LineString([old.shape.centroid, other.shape.centroid])
-            is_one &= not way.intersects(walls)
+            shift = shapely.LineString([old.shape.centroid, other.shape.centroid])
+            is_one &= not shift.intersects(walls)
             if is_one and apart_m <= _CARRIED_M and areas[0] >= _AS_LARGE * areas[1]:
                 closeness[i, j] = 1 - apart_m / (2 * _CARRIED_M)
     matched = pair_most(closeness)

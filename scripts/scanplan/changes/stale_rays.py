@@ -118,7 +118,7 @@ def _cross(places: BaseGeometry, sensor_m: FloatArray, ends_m: FloatArray) -> Bo
         (low[:, 0] <= x1) & (high[:, 0] >= x0) & (low[:, 1] <= y1) & (high[:, 1] >= y0)
     )
     begins = np.broadcast_to(sensor_m[:2], (len(near), 2))
-    ways = shapely.linestrings(np.stack([begins, ends_m[near, :2]], axis=1))
+    sights = shapely.linestrings(np.stack([begins, ends_m[near, :2]], axis=1))
     shapely.prepare(places)
-    found[near] = shapely.intersects(places, ways)
+    found[near] = shapely.intersects(places, sights)
     return found

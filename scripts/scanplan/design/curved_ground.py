@@ -78,9 +78,9 @@ def _find_arcs(ring: BaseGeometry) -> Iterator[_Arc]:
     if len(corners_m) < _LEAST_CORNERS:
         return
     before_m, after_m = (np.roll(corners_m, by, axis=0) for by in (1, -1))
-    ways = np.stack([corners_m - before_m, after_m - corners_m]) @ np.array([1, 1j])
-    turn = np.angle(ways[1] * ways[0].conjugate())
-    length_m = np.abs(ways).sum(axis=0) / 2
+    steps = np.stack([corners_m - before_m, after_m - corners_m]) @ np.array([1, 1j])
+    turn = np.angle(steps[1] * steps[0].conjugate())
+    length_m = np.abs(steps).sum(axis=0) / 2
     radius_m = length_m / np.where(turn, turn, np.inf)
     is_bent = (np.abs(turn) >= _CHORD_RAD[0]) & (np.abs(turn) <= _CHORD_RAD[1])
     # a ring has no first corner: it is begun where no arc runs on

@@ -95,9 +95,9 @@ def _draw_faces(storey: DrawnStorey) -> tuple[Columns, Array]:
         hidden = overlays.buffer_shapes(others, _SKIN_M, join_style="mitre")
         left_m, right_m = wall.sides_m
         # its normal on the left, as of all faces
-        for side, way in enumerate((left_m, right_m[::-1])):
-            shown = overlays.subtract_lines(line_shapes(_pair(way)), hidden)
-            for ends_m, rest in zip(_pair(way), np.atleast_1d(shown), strict=True):
+        for side, side_m in enumerate((left_m, right_m[::-1])):
+            shown = overlays.subtract_lines(line_shapes(_pair(side_m)), hidden)
+            for ends_m, rest in zip(_pair(side_m), np.atleast_1d(shown), strict=True):
                 for part in _list_lines(rest):
                     sides[row, side] = len(lines_m) if sides[row, side] < 0 else sides[row, side]
                     lines_m.append(_along(ends_m, part))

@@ -155,9 +155,9 @@ class _Clearances:
         wall = self._walls[change.number_a]
         return min(self._across(change.shape, wall.solid.ground, turn) for turn in (1, -1))
 
-    def _across(self, stretch: BaseGeometry, own: BaseGeometry, turn: int) -> float:
-        """Return how far the next wall stands off the middle of a stretch, to one side."""
-        ends_m = shapely.get_coordinates(stretch)[[0, -1]]
+    def _across(self, shape: BaseGeometry, own: BaseGeometry, turn: int) -> float:
+        """Return how far the next wall stands off the middle of a line, to one side."""
+        ends_m = shapely.get_coordinates(shape)[[0, -1]]
         along = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
         normal = turn * np.array([-along[1], along[0]])
         middle_m = ends_m.mean(axis=0)

@@ -194,8 +194,8 @@ def _find_jambs(wall: DrawnWall, corners_m: FloatArray) -> FloatArray:
         return wall.line_m[0] + np.array([[place_m.min()], [place_m.max()]]) * along
     first = wall.line_m[0] - wall.centre_m
     turned = turn_rad(corners_m - wall.centre_m, first)
-    way = complex(*first) * np.exp(1j * np.array([turned.min(), turned.max()]))
-    return wall.centre_m + np.column_stack([way.real, way.imag])
+    jambs = complex(*first) * np.exp(1j * np.array([turned.min(), turned.max()]))
+    return wall.centre_m + np.column_stack([jambs.real, jambs.imag])
 
 
 def _draw_space(part: IfcPart, solid: Solid) -> Iterator[DrawnSpace]:

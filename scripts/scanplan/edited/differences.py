@@ -85,8 +85,8 @@ def pair_elements(base: Drawing, edited: Drawing) -> list[Change]:
         if near:
             added.remove(near[0])
         changes.append(Change(element, near[0] if near else None))
-    order = {id(element): row for row, element in enumerate(base.elements)}
-    changes.sort(key=lambda change: order[id(change.before)])
+    order: dict[Element | None, int] = {element: row for row, element in enumerate(base.elements)}
+    changes.sort(key=lambda change: order[change.before])
     walls = [change for change in changes if change.kind == "wall"]
     changes = [part for change in changes for part in _slide(change, walls)]
     return [*changes, *(Change(None, element) for element in added)]

@@ -125,12 +125,12 @@ def _read_opening(insert: Insert, facts: dict[str, Any], per_unit_m: float) -> E
     name = insert.dxf.name
     start_m = np.array([insert.dxf.insert.x, insert.dxf.insert.y]) * per_unit_m
     turn = math.radians(insert.dxf.rotation)
-    way = np.array([math.cos(turn), math.sin(turn)])
+    direction = np.array([math.cos(turn), math.sin(turn)])
     width_m = insert.dxf.xscale * per_unit_m
-    line_m = np.array([start_m, start_m + width_m * way])
+    line_m = np.array([start_m, start_m + width_m * direction])
     said: dict[str, Any] = {"kind": KINDS.get(name, name.casefold())}
     if name in _HINGES:
-        left = np.array([-way[1], way[0]]) * math.copysign(1.0, insert.dxf.yscale)
+        left = np.array([-direction[1], direction[0]]) * math.copysign(1.0, insert.dxf.yscale)
         line_m = line_m - facts.get(WALL_FACT, 0.0) / 2 * left
         said["opens_m"] = line_m[_HINGES[name]] + abs(width_m) * left
     key = str(facts.get("opening", insert.dxf.handle))

@@ -316,8 +316,8 @@ def _simple(outline: Any) -> shapely.Polygon:
 
 def _widen(line: Any, width_m: float) -> list[list[float]]:
     ends_m = np.array(line, float)
-    way = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
-    return _line(ends_m.mean(axis=0) + np.array([[-0.5], [0.5]]) * width_m * way)
+    direction = (ends_m[1] - ends_m[0]) / np.hypot(*(ends_m[1] - ends_m[0]))
+    return _line(ends_m.mean(axis=0) + np.array([[-0.5], [0.5]]) * width_m * direction)
 
 
 def _line(line_m: FloatArray) -> list[list[float]]:

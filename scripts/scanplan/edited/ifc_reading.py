@@ -122,15 +122,15 @@ class _Frames:
 
     def lie_along(self, part: IfcPart) -> FloatArray:
         """Return from where to where (2, 2) a part reaches along its own x axis."""
-        start_m, way = self.find(part.guid)
-        at_m = (part.triangles_m[..., :2] - start_m) @ way
-        return start_m + np.array([[at_m.min()], [at_m.max()]]) * way
+        start_m, direction = self.find(part.guid)
+        at_m = (part.triangles_m[..., :2] - start_m) @ direction
+        return start_m + np.array([[at_m.min()], [at_m.max()]]) * direction
 
 
 def _bent(frames: _Frames, guid: str) -> Element:
     """Return a curved wall by where its own axes lie, as it is moved as a whole or not at all."""
-    start_m, way = frames.find(guid)
-    return Element("wall", guid, np.array([start_m, start_m + way]), is_bent=True)
+    start_m, direction = frames.find(guid)
+    return Element("wall", guid, np.array([start_m, start_m + direction]), is_bent=True)
 
 
 def _opening(frames: _Frames, opening: DrawnOpening, host: str) -> Element:
@@ -141,10 +141,10 @@ def _opening(frames: _Frames, opening: DrawnOpening, host: str) -> Element:
         facts["kind"] = own
     operation = getattr(product, "OperationType", None)
     if operation in _HINGES:
-        start_m, way = frames.find(opening.guid)
+        start_m, direction = frames.find(opening.guid)
         width_m = float(np.hypot(*(opening.line_m[1] - opening.line_m[0])))
-        at_m = start_m + _HINGES[operation] * width_m * way
-        facts["opens_m"] = at_m + width_m * np.array([-way[1], way[0]])
+        at_m = start_m + _HINGES[operation] * width_m * direction
+        facts["opens_m"] = at_m + width_m * np.array([-direction[1], direction[0]])
     return Element("opening", opening.guid, opening.line_m, facts=facts, host=host)
 
 
@@ -168,14 +168,14 @@ def _list_others(
 
 def _virtual(frames: _Frames, bound: Any) -> Element:
     """Return where nothing stands between rooms, along its line."""
-    start_m, way = frames.find(bound.GlobalId)
+    start_m, direction = frames.find(bound.GlobalId)
     (line,) = bound.Representation.Representations[0].Items
     corners = line.Points.CoordList if line.is_a("IfcIndexedPolyCurve") else [
         point.Coordinates for point in line.Points
     ]  # fmt: skip
     at_m = frames.scale_m * np.array([corners[0][0], corners[-1][0]])
     facts = {"kind": bound.ObjectType if bound.ObjectType in _BARE else "passage"}
-    return Element("opening", bound.GlobalId, start_m + at_m[:, None] * way, facts=facts)
+    return Element("opening", bound.GlobalId, start_m + at_m[:, None] * direction, facts=facts)
 
 
 def _room(space: Any) -> Element:

@@ -141,8 +141,8 @@ def _thing(item: Item, kind: str, along_m: float, across_m: float) -> Element:
     place_m = _place_m(item["position"])
     turn = math.radians(-_number(item.get("rotation", 0)))
     half_m = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * [along_m / 2, across_m / 2]
-    ways = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
-    outline = shapely.Polygon(place_m + half_m @ ways)
+    axes = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    outline = shapely.Polygon(place_m + half_m @ axes)
     return Element("furniture", str(item["id"]), outline=outline, facts={"kind": kind})
 
 

@@ -77,8 +77,8 @@ def open_document(unit: str, scale: Scale) -> Drawing:
     document.header["$LASTSAVEDBY"] = "scanplan"
     document.appids.add(APPLICATION)
     for name, (dash_mm, gap_mm) in DASHES_MM.items():
-        dash, gap = dash_mm * scale.per_mm, gap_mm * scale.per_mm
-        document.linetypes.add(name, pattern=[dash + gap, dash, -gap], description=name.title())
+        dash, pause = dash_mm * scale.per_mm, gap_mm * scale.per_mm
+        document.linetypes.add(name, pattern=[dash + pause, dash, -pause], description=name.title())
     add_layers(document)
     document.styles.add(TEXT_STYLE, font=_FONT)
     _add_dimension_style(document, scale)
@@ -187,8 +187,8 @@ def _describe_system(site: Site) -> str:
     axes = "".join(
         f"<CoordinateSystemAxis><AxisOrder>{order}</AxisOrder><AxisName>{noun}</AxisName>"
         f"<AxisAbbreviation>{noun[0]}</AxisAbbreviation>"
-        f"<AxisDirection>{way}</AxisDirection></CoordinateSystemAxis>"
-        for order, noun, way in ((1, "Easting", "east"), (2, "Northing", "north"))
+        f"<AxisDirection>{compass}</AxisDirection></CoordinateSystemAxis>"
+        for order, noun, compass in ((1, "Easting", "east"), (2, "Northing", "north"))
     )
     return (
         '<?xml version="1.0" encoding="UTF-16" standalone="no" ?>'

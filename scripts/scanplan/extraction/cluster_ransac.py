@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import DIAGONAL, Row, SegmentLimits
+from scanplan.extraction.segment_limits import DIAGONAL, SegmentLimits, SegmentRow
 from scanplan.geometry import ransac
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.ray_set import RaySet
@@ -74,7 +74,7 @@ class _WallPoints:
 
 def extract_by_clusters(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: ClusterRansacSettings
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Extract the wall segments of one scan.
 
     Points on vertical surfaces are projected along their normals to dual points: those of one wall
@@ -101,7 +101,7 @@ def extract_by_clusters(
     rng = np.random.default_rng([settings.seed, scan_id])
     reach_rad = _CORNER_REACH * np.deg2rad(settings.reach_deg)
     least = settings.least_points(scan is None)
-    rows: list[Row] = []
+    rows: list[SegmentRow] = []
     for cluster in _cluster_cells(surfaces, settings.bandwidth_m):
         # faces nearer to each other than the bandwidth are in one cluster: a recess and its wall
         while surfaces.cells.count[own := cluster[free[cluster]]].sum() >= least:
@@ -225,14 +225,14 @@ def _is_alike(surfaces: _Surfaces, normal: FloatArray) -> BoolArray:
     return -surfaces.facing @ normal > _ALIKE
 
 
-def _is_beside(xy_m: FloatArray, rows: list[Row], width_m: float) -> BoolArray:
+def _is_beside(xy_m: FloatArray, rows: list[SegmentRow], width_m: float) -> BoolArray:
     """Return which points (n,) are within a width of any segment of `segments.cut_line`."""
     is_beside = np.zeros(len(xy_m), bool)
-    for x0_m, y0_m, x1_m, y1_m, nx, ny, *_ in rows:
-        from_start_m = xy_m - (x0_m, y0_m)
-        step_m = (x1_m - x0_m, y1_m - y0_m)
+    for row in rows:
+        from_start_m = xy_m - (row.x0_m, row.y0_m)
+        step_m = (row.x1_m - row.x0_m, row.y1_m - row.y0_m)
         length_m = np.hypot(*step_m)
         along_m = from_start_m @ step_m / length_m
         is_along = (along_m >= 0) & (along_m <= length_m)
-        is_beside |= is_along & (np.abs(from_start_m @ (nx, ny)) <= width_m)
+        is_beside |= is_along & (np.abs(from_start_m @ (row.nx, row.ny)) <= width_m)
     return is_beside

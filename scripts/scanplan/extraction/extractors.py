@@ -14,7 +14,7 @@ from scanplan.extraction import (
     segments,
     thesis_ransac,
 )
-from scanplan.extraction.segment_limits import ExtractorSettings, Row
+from scanplan.extraction.segment_limits import ExtractorSettings, SegmentRow
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.sensor_frame import centre_in_order
 from scanplan.types import FloatArray, Settings
@@ -42,7 +42,7 @@ class Extractor:
 
     settings: type[ExtractorSettings]
     # the class of the last argument is that of `settings`
-    extract: Callable[[int, FloatArray, RaySet | None, Any], list[Row]]
+    extract: Callable[[int, FloatArray, RaySet | None, Any], list[SegmentRow]]
     drops_clutter: bool = True
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import segments
-from scanplan.extraction.segment_limits import Row, SegmentLimits
+from scanplan.extraction.segment_limits import SegmentLimits, SegmentRow
 from scanplan.geometry import ransac
 from scanplan.geometry.consensus import MODELS
 from scanplan.rays.ray_set import RaySet
@@ -33,7 +33,7 @@ class IterativeRansacSettings(SegmentLimits):
 
 def extract_iteratively(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: IterativeRansacSettings
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Extract the wall segments of one scan.
 
     Find the plane (planar scans: the line) most points lie on, remove them, and repeat until it
@@ -59,7 +59,7 @@ def extract_iteratively(
     least = max(settings.least_points(planar), MODELS["plane"])
     rng = np.random.default_rng([settings.seed, scan_id])
     rest = points
-    rows: list[Row] = []
+    rows: list[SegmentRow] = []
     for _ in range(settings.max_planes):
         if len(rest) < least:
             break

@@ -1,17 +1,30 @@
 """What a wall segment of one scan must be, and how an extractor returns it."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 DIAGONAL = np.cos(np.radians(45))
 """Cosine of half a right angle: what turns more stands across, or points up rather than out."""
 
-Row = tuple[float, ...]
-"""A segment as `segments.cut_line` returns it.
 
-The values of a row of the table of walls, relative to the sensor.
-"""
+class SegmentRow(NamedTuple):
+    """A segment as `segments.cut_line` returns it.
+
+    A row of the table of segments, relative to the sensor.
+    """
+
+    x0_m: float
+    y0_m: float
+    x1_m: float
+    y1_m: float
+    nx: float
+    ny: float
+    n_points: int
+    rmse_m: float
+    z_min_m: float
+    z_max_m: float
 
 
 @dataclass(frozen=True, kw_only=True)

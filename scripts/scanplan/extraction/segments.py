@@ -10,13 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from scanplan.extraction.runs import extend_run_ends, find_runs, find_upright_runs
-from scanplan.extraction.segment_limits import Row, SegmentLimits
+from scanplan.extraction.segment_limits import SegmentLimits, SegmentRow
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet, gather_rays
 from scanplan.types import Array, Columns, FloatArray, IntArray
 
 _HEIGHT_PERCENTILES = (2, 98)  # of a segment's points: stray ones do not make it taller
-_FIELDS = ("x0_m", "y0_m", "x1_m", "y1_m", "nx", "ny", "n_points", "rmse_m", "z_min_m", "z_max_m")
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ def cut_line(
     *,
     scan: RaySet | None = None,
     spare: SparePoints | None = None,
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Cut a line into segments where its points pause, and drop those that are no walls.
 
     In space, points higher than doors make no segment, nor do those of a sill lower than
@@ -124,14 +123,14 @@ def cut_line(
             continue
         (inside,) = np.nonzero((first_m <= where_m) & (where_m <= last_m))
         row = describe_run(line, sign * offset_m, (first_m, last_m), every.take(inside, axis=0))
-        if scan is None or row[9] - row[8] >= limits.min_height_m:
+        if scan is None or row.z_max_m - row.z_min_m >= limits.min_height_m:
             rows.append(row)
     return rows
 
 
 def describe_run(
     line: Line, offset_m: float, run_m: tuple[float, float], inside: FloatArray
-) -> Row:
+) -> SegmentRow:
     """Return the row of a segment.
 
     Parameters
@@ -151,17 +150,17 @@ def describe_run(
     foot_m = offset_m * line.normal
     start_m, end_m = (foot_m + along_m * line.direction for along_m in run_m)
     rmse_m = np.sqrt(np.mean((inside[:, :2] @ line.normal - offset_m) ** 2))
-    return (*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
+    return SegmentRow(*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
 
 
 def collect_segments(
-    rows: Sequence[Row], sensor_xyz_m: FloatArray, max_rmse_m: float = np.inf
+    rows: Sequence[SegmentRow], sensor_xyz_m: FloatArray, max_rmse_m: float = np.inf
 ) -> WallSegments:
     """Make a scan's segments, map frame, most points first, of the rows of `cut_line`.
 
     What scatters more than `max_rmse_m` is none.
     """
-    values = np.array(rows, float).reshape(-1, len(_FIELDS))
+    values = np.array(rows, float).reshape(-1, len(SegmentRow._fields))
     values = values[values[:, 7] <= max_rmse_m]
     values = values[np.lexsort([*values.T[3::-1], -values[:, 6]])]
     x_m, y_m, z_m = np.asarray(sensor_xyz_m, float)
@@ -189,8 +188,8 @@ def segment_columns(
         np.column_stack([s.start_m, s.end_m, s.normal, s.n_points, s.rmse_m, s.z_range_m])
         for s in segments
     ]
-    stacked = np.vstack([np.empty((0, len(_FIELDS))), *parts])
-    values = dict(zip(_FIELDS, stacked.T, strict=True))
+    stacked = np.vstack([np.empty((0, len(SegmentRow._fields))), *parts])
+    values = dict(zip(SegmentRow._fields, stacked.T, strict=True))
     numbers = [np.arange(count, dtype=np.int32) for count in counts]
     return {
         "scan_id": np.repeat(np.asarray(scan_ids, np.int32), counts),

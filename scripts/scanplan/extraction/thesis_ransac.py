@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import ExtractorSettings, Row
+from scanplan.extraction.segment_limits import ExtractorSettings, SegmentRow
 from scanplan.geometry import consensus
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
@@ -58,7 +58,7 @@ class ThesisClusterSettings(ThesisIterativeSettings):
 
 def extract_repeatedly(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: ThesisIterativeSettings
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Find the model of most points, remove these, and repeat until too few are left for another.
 
     Parameters
@@ -77,7 +77,7 @@ def extract_repeatedly(
     """
     rng = np.random.default_rng([settings.seed, scan_id])
     least = settings.least_points(scan is None)
-    rows: list[Row] = []
+    rows: list[SegmentRow] = []
     while len(points) >= least:
         found = _find_model(points, scan is None, settings, rng)
         if found.inliers.sum() < least:
@@ -89,7 +89,7 @@ def extract_repeatedly(
 
 def extract_of_clusters(
     scan_id: int, points: FloatArray, scan: RaySet | None, settings: ThesisClusterSettings
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Cluster the points of upright surfaces by their projections; find one model in each cluster.
 
     See `extract_repeatedly` for the parameters and what is returned.
@@ -97,7 +97,7 @@ def extract_of_clusters(
     rng = np.random.default_rng([settings.seed, scan_id])
     planar = scan is None
     least = settings.least_points(planar)
-    rows: list[Row] = []
+    rows: list[SegmentRow] = []
     for own in _cluster_points(points, planar, settings):
         if len(own) < least:
             continue
@@ -165,7 +165,7 @@ def _find_model(
 
 def _describe_wall(
     on_wall: FloatArray, axis: FloatArray, settings: ThesisIterativeSettings
-) -> list[Row]:
+) -> list[SegmentRow]:
     """Return the row of a model's inliers (n, 3), from end to end; none if it is no wall."""
     level = float(np.hypot(*axis[:2]))
     is_plane = len(axis) == 3 and settings.model == "plane"

@@ -78,7 +78,7 @@ def find_narrow_places(
     grid = _fit_grid(filled, cell_m)
     cells = list_cells(fill_polygons([filled], grid))
     far_m = cells.far * cell_m
-    way = draw_way(visited_m, cell_m)
+    track = draw_way(visited_m, cell_m)
     visited_m = visited_m[shapely.contains_xy(filled, *visited_m.T)]
     column, row = np.floor((visited_m - grid.low_m) / cell_m).astype(int).T
     places = np.unique(cells.find(row, column))
@@ -94,7 +94,7 @@ def find_narrow_places(
         line = _shortest_across(near, middle_m)
         if line is None or not 0 < _length_m(line) <= max_width_m:
             continue
-        is_passed = visited.issuperset(pair) and way.intersects(LineString(line))
+        is_passed = visited.issuperset(pair) and track.intersects(LineString(line))
         if not is_passed or _widens_on_both_sides(near, line):
             lines.append(line)
     lines += _choose_gaps(filled, gaps_m, lines)
@@ -106,14 +106,14 @@ def _choose_gaps(
 ) -> list[FloatArray]:
     """Return the gaps that ground is much wider beside, the narrowest of those near each other."""
     chosen: list[FloatArray] = []
-    for gap in sorted(gaps_m, key=_length_m):
+    for line_m in sorted(gaps_m, key=_length_m):
         # what is beyond its ends parts other ground
-        beside = overlays.buffer_shapes(LineString(gap), _length_m(gap) / 2, cap_style="flat")
+        beside = overlays.buffer_shapes(LineString(line_m), _length_m(line_m) / 2, cap_style="flat")
         is_known = any(beside.intersects(LineString(line)) for line in [*lines, *chosen])
-        if is_known or not shapely.contains_xy(ground, *gap.mean(axis=0)):
+        if is_known or not shapely.contains_xy(ground, *line_m.mean(axis=0)):
             continue
-        if _widens_on_both_sides(ground, gap):
-            chosen.append(gap)
+        if _widens_on_both_sides(ground, line_m):
+            chosen.append(line_m)
     return chosen
 
 
@@ -138,31 +138,35 @@ def _shortest_across(ground: BaseGeometry, middle_m: FloatArray) -> FloatArray |
     """Return the shortest line (2, 2) across ground through a place; None outside of it."""
     # every five degrees: a line that far off the shortest is no longer by a hundredth
     angle = np.radians(np.arange(0, 180, 5))
-    ways = np.column_stack([np.cos(angle), np.sin(angle)])
-    return _line_across(ground, middle_m, ways[np.argmin(_widths_m(ground, middle_m, ways))])
+    directions = np.column_stack([np.cos(angle), np.sin(angle)])
+    return _line_across(
+        ground, middle_m, directions[np.argmin(_widths_m(ground, middle_m, directions))]
+    )
 
 
-def _widths_m(ground: BaseGeometry, place_m: FloatArray, ways: FloatArray) -> FloatArray:
+def _widths_m(ground: BaseGeometry, place_m: FloatArray, directions: FloatArray) -> FloatArray:
     """Return how far it is from outline to outline through a place, along unit vectors (n, 2)."""
     corners_m, ring = shapely.get_coordinates(
         shapely.get_parts(shapely.boundary(shapely.get_parts(ground))), return_index=True
     )
-    along_m = (corners_m - place_m) @ ways.T
-    beside_m = (corners_m - place_m) @ np.stack([-ways[:, 1], ways[:, 0]])
+    along_m = (corners_m - place_m) @ directions.T
+    beside_m = (corners_m - place_m) @ np.stack([-directions[:, 1], directions[:, 0]])
     on_left = beside_m > 0
-    edge, way = np.nonzero((on_left[1:] != on_left[:-1]) & (ring[1:] == ring[:-1])[:, None])
+    edge, column = np.nonzero((on_left[1:] != on_left[:-1]) & (ring[1:] == ring[:-1])[:, None])
     (before_m, after_m), (low_m, high_m) = (
-        (m[edge, way], m[edge + 1, way]) for m in (along_m, beside_m)
+        (m[edge, column], m[edge + 1, column]) for m in (along_m, beside_m)
     )
     crossing_m = before_m + (after_m - before_m) * low_m / (low_m - high_m)
-    nearest_m = np.full((2, len(ways)), np.inf)
-    np.minimum.at(nearest_m, ((crossing_m < 0).astype(int), way), np.abs(crossing_m))
+    nearest_m = np.full((2, len(directions)), np.inf)
+    np.minimum.at(nearest_m, ((crossing_m < 0).astype(int), column), np.abs(crossing_m))
     return nearest_m.sum(axis=0)
 
 
-def _line_across(ground: BaseGeometry, place_m: FloatArray, way: FloatArray) -> FloatArray | None:
+def _line_across(
+    ground: BaseGeometry, place_m: FloatArray, direction: FloatArray
+) -> FloatArray | None:
     """Return the line (2, 2) through a place from outline to outline; None outside of ground."""
-    reach = _diagonal_m(ground) * way
+    reach = _diagonal_m(ground) * direction
     pieces = overlays.intersect_lines(ground, LineString([place_m - reach, place_m + reach]))
     place = shapely.Point(place_m)
     for piece in shapely.get_parts(pieces):
@@ -187,11 +191,11 @@ def _widens_on_both_sides(ground: BaseGeometry, line: FloatArray) -> bool:
 def _widens(ground: BaseGeometry, line: FloatArray, side: int) -> bool:
     """Return whether ground is much wider than a line across it on its left (1) or right (-1)."""
     width_m = _length_m(line)
-    way = (line[1] - line[0]) / width_m
-    across = side * np.array([-way[1], way[0]])
+    direction = (line[1] - line[0]) / width_m
+    across = side * np.array([-direction[1], direction[0]])
     # beyond the wall that a door is in, and beyond what stands just beside a door
     away_m = width_m * np.array([0.5, 1.0])
     places_m = line.mean(axis=0) + away_m[:, None] * across
-    beside = [_line_across(ground, place_m, way) for place_m in places_m]
+    beside = [_line_across(ground, place_m, direction) for place_m in places_m]
     widest_m = max((_length_m(other) for other in beside if other is not None), default=0.0)
     return width_m < NARROWER * widest_m

@@ -94,10 +94,10 @@ def cheapest_ways(grid: RoadmapGrid, stop: int) -> tuple[FloatArray, IntArray]:
 
 def trace_way(cell_before: IntArray, stop: int, cell: int) -> list[int]:
     """Return the cells from a stop of `cheapest_ways` to a cell that can be reached from it."""
-    way = [cell]
-    while way[-1] != stop:
-        way.append(int(cell_before[way[-1]]))
-    return way[::-1]
+    cells = [cell]
+    while cells[-1] != stop:
+        cells.append(int(cell_before[cells[-1]]))
+    return cells[::-1]
 
 
 def room_cells(grid: RoadmapGrid, room: BaseGeometry) -> IntArray:

@@ -306,10 +306,10 @@ class FloorPlan:
         In the map frame, at most 45 degrees from its x axis.
         """
         columns = self.walls if len(self.walls["wall"]) else self.faces
-        ways = np.diff(centrelines_m(columns), axis=1)[:, 0] @ np.array([1, 1j])
-        angles = np.angle(ways)
+        directions = np.diff(centrelines_m(columns), axis=1)[:, 0] @ np.array([1, 1j])
+        angles = np.angle(directions)
         off = np.abs(np.sin(2 * (angles[:, None] - angles)))
-        best = float(np.degrees(angles[np.argmin(off @ np.abs(ways))]))
+        best = float(np.degrees(angles[np.argmin(off @ np.abs(directions))]))
         return best - 90 * round(best / 90)
 
     @cached_property
@@ -410,13 +410,13 @@ class FloorPlan:
 
     def _leave_unseen(self, grounds: Array) -> Array:
         """Return what no chosen scan saw of grounds, nor furniture on it, (k,) Polygons."""
-        seen, pieces = (
+        shown, pieces = (
             shapely.from_wkb(np.asarray(columns["geometry"], object))
             for columns in (self.free, self.furniture)
         )
-        if len(seen) == 0:
+        if len(shown) == 0:
             return np.empty(0, object)
-        known = overlays.unite_areas([*seen, *pieces], grid=_GRID_M)
+        known = overlays.unite_areas([*shown, *pieces], grid=_GRID_M)
         hidden = overlays.subtract_areas(grounds, known, grid=_GRID_M)
         parts = [part for ground in hidden for part in free_space.open_polygons(ground, END_M)]
         return np.array(parts, object)

@@ -84,7 +84,7 @@ def measure_sparse_rays(rays: RaySet, min_opening_m: float) -> Measured:
     rays : ray_set.RaySet
     min_opening_m : float
     """
-    spacings_rad = [column_spacing_rad(*way) for way in rays.ways()]
+    spacings_rad = [column_spacing_rad(*of_scan) for of_scan in rays.headings()]
     spacing_rad = float(np.median(spacings_rad))
     if spacing_rad <= 0:
         return state_witness("sparse rays", np.nan)

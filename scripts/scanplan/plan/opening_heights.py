@@ -23,7 +23,7 @@ _MOST_DOUBT_M = 0.2  # half of it is what a height may be wrong by
 
 
 def estimate_sill_m(
-    seen: FaceObservation, low_m: float, high_m: float, *, below_m: float = np.inf
+    observation: FaceObservation, low_m: float, high_m: float, *, below_m: float = np.inf
 ) -> float:
     """Return the sill of an opening, 0 where it reaches to the floor, NaN where it is not known.
 
@@ -34,35 +34,37 @@ def estimate_sill_m(
 
     Parameters
     ----------
-    seen : face_observation.FaceObservation
+    observation : face_observation.FaceObservation
     low_m, high_m : float
         The opening along the line.
     below_m : float
         Returns that are higher are none of what stands below.
     """
-    free_z_m = seen.free_z_m[seen.free_between(low_m, high_m)]
+    free_z_m = observation.free_z_m[observation.free_between(low_m, high_m)]
     is_crossed = len(free_z_m) >= ENOUGH_RAYS
     lowest_m = float(np.percentile(free_z_m, LOW_PERCENT)) if is_crossed else np.inf
-    below_z_m = _step_z_m(seen, low_m, high_m, lowest_m)
+    below_z_m = _step_z_m(observation, low_m, high_m, lowest_m)
     is_at_floor = lowest_m <= AT_FLOOR_M
     if not is_at_floor:
-        wall_z_m = seen.occupied_z_m[seen.occupied_between(low_m, high_m)]
+        wall_z_m = observation.occupied_z_m[observation.occupied_between(low_m, high_m)]
         below_z_m = np.concatenate([below_z_m, wall_z_m[wall_z_m < min(lowest_m, below_m)]])
     if len(below_z_m) < ENOUGH_RAYS:
         return 0.0 if is_at_floor else np.nan
     return robust_highest_m(below_z_m)
 
 
-def _step_z_m(seen: FaceObservation, low_m: float, high_m: float, lowest_m: float) -> FloatArray:
+def _step_z_m(
+    observation: FaceObservation, low_m: float, high_m: float, lowest_m: float
+) -> FloatArray:
     """Return the heights of what stands near the floor below the lowest ray, if all along."""
-    low = seen.low_between(low_m, high_m)
-    raised = (seen.low_z_m[low] > NOISE_M) & (seen.low_z_m[low] < lowest_m)
-    share = _filled_share(seen.low_m[low][raised], low_m, high_m)
-    return seen.low_z_m[low][raised] if share >= ALONG_SHARE else np.empty(0)
+    low = observation.low_between(low_m, high_m)
+    raised = (observation.low_z_m[low] > NOISE_M) & (observation.low_z_m[low] < lowest_m)
+    share = _filled_share(observation.low_m[low][raised], low_m, high_m)
+    return observation.low_z_m[low][raised] if share >= ALONG_SHARE else np.empty(0)
 
 
 def estimate_lintel_m(
-    seen: FaceObservation, low_m: float, high_m: float, free_m: float, least_m: float
+    observation: FaceObservation, low_m: float, high_m: float, free_m: float, least_m: float
 ) -> float:
     """Return the lintel, NaN where it could be anywhere between rays far apart.
 
@@ -72,7 +74,7 @@ def estimate_lintel_m(
 
     Parameters
     ----------
-    seen : face_observation.FaceObservation
+    observation : face_observation.FaceObservation
     low_m, high_m : float
         The opening along the line.
     free_m : float
@@ -81,10 +83,11 @@ def estimate_lintel_m(
         Points lower than that are none of the wall above it.
     """
     # beside a jamb points are its reveal's
-    inner = seen.occupied_between(low_m + END_M, high_m - END_M)
-    above = seen.occupied_z_m[inner] > least_m
+    inner = observation.occupied_between(low_m + END_M, high_m - END_M)
+    above = observation.occupied_z_m[inner] > least_m
     above_m, off_m, scan = (
-        of[inner][above] for of in (seen.occupied_z_m, seen.occupied_off_m, seen.occupied_scan)
+        of[inner][above]
+        for of in (observation.occupied_z_m, observation.occupied_off_m, observation.occupied_scan)
     )
     if len(above_m) < FEW:
         return np.nan

@@ -306,8 +306,8 @@ def _points_of_face(face: FaceInterval | InferredFace, floor_z_m: float) -> Row:
     if isinstance(face, InferredFace):
         unknown = dict.fromkeys(("rmse_m", "z_min_m", "z_max_m"), math.nan)
         return {"state": "inferred", "n_points": 0, "n_scans": 0, **unknown}
-    offset_m = face.seen.occupied_off_m[face.points]
-    height_m = face.seen.occupied_z_m[face.points]
+    offset_m = face.observation.occupied_off_m[face.points]
+    height_m = face.observation.occupied_z_m[face.points]
     z_min_m, z_max_m = np.percentile(height_m, (LOW_PERCENT, 100 - LOW_PERCENT)) + floor_z_m
     return {
         "state": "observed",

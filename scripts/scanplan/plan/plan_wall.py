@@ -179,9 +179,9 @@ class PlanWall(Span):
         return self.left + self.right
 
     @property
-    def lines(self) -> list[FaceObservation]:
+    def observations(self) -> list[FaceObservation]:
         """What was observed of the lines of its faces, each once."""
-        return list({id(face.seen): face.seen for face in self.members}.values())
+        return list(dict.fromkeys(face.observation for face in self.members))
 
     def between(self, begin_m: float, end_m: float) -> "PlanWall":
         """Return the wall from one place to another along it, with what has its middle there."""

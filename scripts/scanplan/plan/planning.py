@@ -228,9 +228,14 @@ def make_plan(
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
     rays = replace(rays, is_level=np.abs(up[:, 2]) >= _LEVEL)
-    gaps = settings.openings
+    openings = settings.openings
     find_free = workers.begin_in_thread(
-        *(_find_free, rays, track_m, gaps.min_opening_m, gaps.max_door_m), threads=threads
+        _find_free,
+        rays,
+        track_m,
+        openings.min_opening_m,
+        openings.max_door_m,
+        threads=threads,
     )
     dense = rays
     if others.find_rays is not None:
@@ -260,8 +265,12 @@ def make_plan(
         faces=face_columns,
         walls=plan_tables.wall_columns(walls, evidence, main_rows, doubtful, floor_z_m),
         openings=plan_tables.opening_columns(
-            *(walls, spaces.rooms, settings.openings.max_door_m),
-            *(surfaces.glass_walls, spaces.partings, bare),
+            walls,
+            spaces.rooms,
+            settings.openings.max_door_m,
+            surfaces.glass_walls,
+            spaces.partings,
+            bare,
         ),
         rooms=plan_tables.room_columns(spaces.rooms),
         evidence=plan_tables.evidence_columns(evidence, rays.scan_ids, chosen.t_ns),
@@ -363,7 +372,7 @@ class _Survey:
         return self.find_free()[1]
 
     @functools.cached_property
-    def seen(self) -> BaseGeometry:
+    def seen_floor(self) -> BaseGeometry:
         """Likewise by any scan, chosen or not: what rooms are made of."""
         if self.find_seen is None:
             return self.floor
@@ -373,8 +382,11 @@ class _Survey:
         """Return walls with their openings."""
         candidates = merge_segments(segments, self.settings.merge)
         traced = trace_faces(
-            *(candidates, self.rays, self.settings.merge),
-            *(self.settings.reading, self.settings.pairs),
+            candidates,
+            self.rays,
+            self.settings.merge,
+            self.settings.reading,
+            self.settings.pairs,
         )
         walls, furnished, leaves = self._make_walls(traced.faces)
         unpaired_m = usual_thickness_m(walls)
@@ -385,15 +397,21 @@ class _Survey:
         labelled = label_surfaces(walls, evidence, max_door_m=self.settings.openings.max_door_m)
         glass = find_fronts(labelled.walls, self.dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(
-            *(labelled.walls, glass.panes),
+            labelled.walls,
+            glass.panes,
             min_length_m=min_width_m,
             unpaired_m=unpaired_m,
         )
         walls, tops_m = self._leave_out_columns(
-            *(labelled.walls, labelled.tops_m, glass_walls, unpaired_m)
+            labelled.walls,
+            labelled.tops_m,
+            glass_walls,
+            unpaired_m,
         )
         walls, tops_m = bend_walls(
-            *(walls, tops_m, self.rays),
+            walls,
+            tops_m,
+            self.rays,
             pairing=self.settings.pairs,
             opening=self.settings.openings,
             reading=self.settings.reading,
@@ -434,7 +452,7 @@ class _Survey:
             ghost_distance_m=self.settings.merge.ghost_distance_m,
         )
         walls, furnished, leaves = fronts.drop_fronts(
-            walls, self.floor, self.seen, assemble, limits
+            walls, self.floor, self.seen_floor, assemble, limits
         )
         # a plane shows no more of what is between two faces than its ends
         most_m = greatest_thickness_m(walls)
@@ -457,7 +475,9 @@ class _Survey:
         max_width_m = self.settings.pairs.max_thickness_m
         classify = functools.partial(classify_gap, settings=self.settings.openings)
         cut = cut_off_pillars(
-            *(walls, glass_walls, classify),
+            walls,
+            glass_walls,
+            classify,
             min_width_m=self.settings.openings.min_opening_m,
             max_thickness_m=max_width_m,
         )
@@ -476,7 +496,7 @@ class _Survey:
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
         bounds, floor = surfaces.bounds, self._floor_with(surfaces.furnished)
-        hidden = free_space.difference_on_grid(floor, self.seen)
+        hidden = free_space.difference_on_grid(floor, self.seen_floor)
         partings = room_bounds.find_partings(
             bounds,
             room_bounds.Floor(floor, planar=self.rays.planar, hidden=hidden),
@@ -496,7 +516,8 @@ class _Survey:
         # returns of leaves are explained, as those of walls are
         leaves = [plan_tables.draw_leaf(ends_m) for ends_m in surfaces.open_leaves_m]
         pieces = find_pieces(
-            *(self.rays, [*bounds.strips, *leaves]),
+            self.rays,
+            [*bounds.strips, *leaves],
             *([room.polygon for room in rooms], self.views),
             max_height_m=self.settings.furniture.furniture_height_m,
             hidden=surfaces.furnished,
@@ -505,7 +526,9 @@ class _Survey:
         rooms = [room for room in rooms if room.n_scans]
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         pieces = tell_columns(
-            *(pieces, self.rays, bounds.strips),
+            pieces,
+            self.rays,
+            bounds.strips,
             furniture_height_m=self.settings.furniture.furniture_height_m,
             max_width_m=self.settings.pairs.max_thickness_m,
         )
@@ -521,7 +544,7 @@ class _Survey:
         )
 
     def _floor_with(self, grounds: Sequence[BaseGeometry]) -> BaseGeometry:
-        return free_space.union_on_grid([self.seen, *grounds]) if grounds else self.seen
+        return free_space.union_on_grid([self.seen_floor, *grounds]) if grounds else self.seen_floor
 
 
 def _settle(surfaces: _Surfaces, spaces: _Spaces, max_door_m: float) -> _Surfaces:
@@ -546,23 +569,23 @@ def _stand_plumb(rays: RaySet) -> FloatArray:
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:
     """Return what each scan saw free, and all that was."""
     views = free_space.free_polygons(rays)
-    seen = free_space.union_on_grid(views)
+    seen_floor = free_space.union_on_grid(views)
     driven = free_space.driven_ground(track_m, width_m=width_m, max_step_m=max_step_m)
     # nearly all of it was seen: only what was not is worth a union
-    shapely.prepare(seen)
-    unseen = driven[~shapely.covers(seen, driven)]
-    return views, free_space.union_on_grid([seen, *unseen]) if len(unseen) else seen
+    shapely.prepare(seen_floor)
+    unseen = driven[~shapely.covers(seen_floor, driven)]
+    return views, free_space.union_on_grid([seen_floor, *unseen]) if len(unseen) else seen_floor
 
 
 def _find_free_floor(
     bounds: wall_ground.Bounds, floor: shapely.MultiPolygon
 ) -> list[shapely.Polygon]:
     """Return the polygons of floor that rays went over, openings with it, walls without."""
-    ways = [
+    doors = [
         wall_ground.opening_polygon(wall, opening, bounds.unpaired_m)
         for wall in bounds.walls
         for opening in wall.openings
         if opening.kind == "door"
     ]
-    solid = free_space.difference_on_grid(bounds.solid, free_space.union_on_grid(ways))
+    solid = free_space.difference_on_grid(bounds.solid, free_space.union_on_grid(doors))
     return list(free_space.difference_on_grid(floor, solid).geoms)

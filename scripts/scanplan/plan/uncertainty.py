@@ -169,9 +169,9 @@ def _estimate_wall(
 
 def _hits(intervals: Sequence[FaceInterval]) -> tuple[IntArray, FloatArray, FloatArray]:
     """Return scan, offset and height of all points that show face intervals."""
-    scan = np.concatenate([i.seen.occupied_scan[i.points] for i in intervals])
-    offset_m = np.concatenate([i.seen.occupied_off_m[i.points] for i in intervals])
-    z_m = np.concatenate([i.seen.occupied_z_m[i.points] for i in intervals])
+    scan = np.concatenate([i.observation.occupied_scan[i.points] for i in intervals])
+    offset_m = np.concatenate([i.observation.occupied_off_m[i.points] for i in intervals])
+    z_m = np.concatenate([i.observation.occupied_z_m[i.points] for i in intervals])
     return scan, offset_m, z_m
 
 
@@ -205,7 +205,7 @@ def _side_sigmas_m(
     """
     scan, offset_m, _ = _hits(intervals)
     scans, index, count = np.unique(scan, return_inverse=True, return_counts=True)
-    xy_m = np.concatenate([i.line.at(i.seen.occupied_m[i.points]) for i in intervals])
+    xy_m = np.concatenate([i.line.at(i.observation.occupied_m[i.points]) for i in intervals])
     x_m, y_m, mean_m = (np.bincount(index, values) / count for values in (*xy_m.T, offset_m))
     sigmas_m = placed.sigmas_m(scans, np.column_stack([x_m, y_m]), normal)
     deviation_m = mean_m - np.average(mean_m, weights=count)
@@ -242,11 +242,11 @@ def _end_sigma_m(
     sigmas_m: list[float] = []
     pitch_m = math.inf
     for interval in wall.members:
-        seen = interval.seen
-        along_m = wall.line.along_m(interval.line.at(seen.occupied_m[interval.points]))
+        observation = interval.observation
+        along_m = wall.line.along_m(interval.line.at(observation.occupied_m[interval.points]))
         is_near = np.abs(along_m - end_m) <= _NEAR_END_M
         if is_near.any():
-            scans = np.unique(seen.occupied_scan[interval.points][is_near])
+            scans = np.unique(observation.occupied_scan[interval.points][is_near])
             points_m = np.repeat(end_at_m, len(scans), axis=0)
             sigmas_m += placed.sigmas_m(scans, points_m, wall.line.direction).tolist()
             pitch_m = min(pitch_m, _NEAR_END_M / is_near.sum())

@@ -140,9 +140,9 @@ def _without_open(
         return [extent_m]
     taken_m = [_extent_m(line, wall, gap.low_m, gap.high_m) for gap in wall.openings]
     open_m: list[Extent] = []
-    for seen in wall.lines:
-        for ends_m in seen.raster.find_opened(door_height_m):
-            low_m, high_m = np.sort(line.along_m(seen.line.at(ends_m))).tolist()
+    for observation in wall.observations:
+        for ends_m in observation.raster.find_opened(door_height_m):
+            low_m, high_m = np.sort(line.along_m(observation.line.at(ends_m))).tolist()
             if not any(low_m < end_m and high_m > begin_m for begin_m, end_m in taken_m):
                 open_m.append((low_m, high_m))
     if not open_m:

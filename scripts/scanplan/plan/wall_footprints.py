@@ -24,14 +24,14 @@ class _Ends:
     Attributes
     ----------
     place_m : (2n, 2) float64
-    way : (2n, 2) float64
+    direction : (2n, 2) float64
         Unit vectors into the wall.
     left_m, right_m : (2n,) float64
         How far the surfaces lie from the line, on both sides of the way.
     """
 
     place_m: FloatArray
-    way: FloatArray
+    direction: FloatArray
     left_m: FloatArray
     right_m: FloatArray
 
@@ -106,8 +106,8 @@ def cut_sides(
         square = _square(ends, e, ends.place_m[e])
         # seen from its end, the sides of a wall are the other way round at the second one
         for side, at in zip(sides, (-1, 0) if e % 2 == 0 else (0, -1), strict=True):
-            inward_m = max((corners[e][at] - square[at]) @ ends.way[e], 0.0)
-            side.append(square[at] + inward_m * ends.way[e])
+            inward_m = max((corners[e][at] - square[at]) @ ends.direction[e], 0.0)
+            side.append(square[at] + inward_m * ends.direction[e])
     left, right = (np.array(side).reshape(-1, 2, 2) for side in sides)
     return left, right
 
@@ -130,9 +130,11 @@ def find_corners(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -
     for meeting in joints.corners:
         corners.update(_mitre(ends, meeting, ends.place_m[meeting].mean(axis=0)))
     for e, other in joints.crossings:
-        places_m, ways = ends.place_m[[e, other]], ends.way[[e, other]]
+        places_m, directions = ends.place_m[[e, other]], ends.direction[[e, other]]
         corners.update(
-            _mitre(ends, [e, other], _crossing(places_m[0], ways[0], places_m[1], ways[1]))
+            _mitre(
+                ends, [e, other], _crossing(places_m[0], directions[0], places_m[1], directions[1])
+            )
         )
     for first in range(0, len(corners), 2):
         ring = _ring(corners[first], corners[first + 1])
@@ -146,22 +148,22 @@ def _ends(lines_m: FloatArray, left_m: FloatArray, right_m: FloatArray) -> _Ends
     length_m = np.hypot(*along_m.T)
     if not (length_m > 0).all() or not (left_m + right_m > 0).all():
         raise ValueError("a wall has no length or no thickness")
-    way = along_m / length_m[:, None]
+    direction = along_m / length_m[:, None]
     return _Ends(
         place_m=lines_m.reshape(-1, 2),
-        way=np.stack([way, -way], axis=1).reshape(-1, 2),
+        direction=np.stack([direction, -direction], axis=1).reshape(-1, 2),
         left_m=np.stack([left_m, right_m], axis=1).ravel(),
         right_m=np.stack([right_m, left_m], axis=1).ravel(),
     )
 
 
-def _left_of(way: FloatArray) -> FloatArray:
-    return np.array([-way[1], way[0]])
+def _left_of(direction: FloatArray) -> FloatArray:
+    return np.array([-direction[1], direction[0]])
 
 
 def _square(ends: _Ends, e: int, place_m: FloatArray) -> list[FloatArray]:
     """Return the right and the left corner of an end that is cut off square at a place."""
-    left = _left_of(ends.way[e])
+    left = _left_of(ends.direction[e])
     return [place_m - ends.right_m[e] * left, place_m + ends.left_m[e] * left]
 
 
@@ -190,15 +192,15 @@ def _cross_at_ends(lines_m: FloatArray, stops: list[tuple[int, int]]) -> Iterato
 
     Walls that turn too little for a corner run on beside each other.
     """
-    way = lines_m[:, 1] - lines_m[:, 0]
-    way /= np.hypot(*way.T)[:, None]
+    direction = lines_m[:, 1] - lines_m[:, 0]
+    direction /= np.hypot(*direction.T)[:, None]
     stopping = set(stops)
     taken: set[int] = set()
     for end, wall in stops:
         others = [e for e in (2 * wall, 2 * wall + 1) if (e, end // 2) in stopping]
         is_free = taken.isdisjoint({end, *others})
         line, crossed = (shapely.LineString(lines_m[row]) for row in (end // 2, wall))
-        is_turned = abs(_cross(way[end // 2], way[wall])) >= _MIN_SINE
+        is_turned = abs(_cross(direction[end // 2], direction[wall])) >= _MIN_SINE
         if others and is_free and is_turned and line.intersects(crossed):
             taken |= {end, others[0]}
             yield end, others[0]
@@ -233,14 +235,14 @@ def _butt(ends: _Ends, e: int, other: int, square: list[FloatArray]) -> list[Flo
     They stay as they were if it runs along that wall, or would have to be drawn on so far that it
     ends in a tip.
     """
-    way = ends.way[other]
-    if abs(_cross(ends.way[e], way)) < _MIN_SINE:
+    direction = ends.direction[other]
+    if abs(_cross(ends.direction[e], direction)) < _MIN_SINE:
         return square
-    is_from_left = _cross(way, ends.way[e]) > 0
+    is_from_left = _cross(direction, ends.direction[e]) > 0
     side_m = ends.left_m[other] if is_from_left else -ends.right_m[other]
-    surface_m = ends.place_m[other] + _left_of(way) * side_m
-    met_m = [_crossing(corner_m, ends.way[e], surface_m, way) for corner_m in square]
-    beyond_m = np.max((np.array(square) - met_m) @ ends.way[e])
+    surface_m = ends.place_m[other] + _left_of(direction) * side_m
+    met_m = [_crossing(corner_m, ends.direction[e], surface_m, direction) for corner_m in square]
+    beyond_m = np.max((np.array(square) - met_m) @ ends.direction[e])
     return met_m if beyond_m <= _MITRE_LIMIT * ends.width_m[e] + END_M else square
 
 
@@ -252,12 +254,14 @@ def _mitre(ends: _Ends, meeting: list[int], centre_m: FloatArray) -> Corners:
     is_junction = len(meeting) > 2
     if is_junction:
         centre_m = np.mean([_foot(ends, e, centre_m) for e in meeting], axis=0)
-    around = sorted(meeting, key=lambda e: (np.arctan2(*ends.way[e][::-1]), e))
+    around = sorted(meeting, key=lambda e: (np.arctan2(*ends.direction[e][::-1]), e))
     corners = {e: _square(ends, e, _foot(ends, e, centre_m)) for e in around}
     for e, following in zip(around, around[1:] + around[:1], strict=True):
-        if abs(_cross(ends.way[e], ends.way[following])) < _MIN_SINE:
+        if abs(_cross(ends.direction[e], ends.direction[following])) < _MIN_SINE:
             continue
-        met_m = _crossing(corners[e][-1], ends.way[e], corners[following][0], ends.way[following])
+        met_m = _crossing(
+            corners[e][-1], ends.direction[e], corners[following][0], ends.direction[following]
+        )
         widest_m = max(ends.width_m[e], ends.width_m[following])
         if np.hypot(*(met_m - centre_m)) <= _MITRE_LIMIT * widest_m + END_M:
             corners[e][-1] = met_m
@@ -269,7 +273,7 @@ def _mitre(ends: _Ends, meeting: list[int], centre_m: FloatArray) -> Corners:
 
 def _foot(ends: _Ends, e: int, place_m: FloatArray) -> FloatArray:
     """Return the point of an end's line that is nearest to a place."""
-    return ends.place_m[e] + ends.way[e] * ((place_m - ends.place_m[e]) @ ends.way[e])
+    return ends.place_m[e] + ends.direction[e] * ((place_m - ends.place_m[e]) @ ends.direction[e])
 
 
 def _cross(a: FloatArray, b: FloatArray) -> float:

@@ -110,7 +110,7 @@ def _offer_pairs(
             if is_opposite and not _contradict(faces[i], faces[j], door_height_m):
                 offers.append((_OPPOSITE, -overlap_m, i, j))
         elif -overlap_m <= settings.max_gap_m and abs(behind_m) <= settings.offset_m:
-            kind = _SAME_LINE if faces[i].seen is faces[j].seen else _ONWARD
+            kind = _SAME_LINE if faces[i].observation is faces[j].observation else _ONWARD
             offers.append((kind, abs(behind_m), i, j))
     return [(i, j) for _, _, i, j in sorted(offers)]
 
@@ -126,7 +126,7 @@ def _overlap(one: FaceInterval, other: FaceInterval) -> tuple[float, float]:
 def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) -> bool:
     """Return whether rays go through one side where the other was seen and it was not."""
     for shown, unseen in ((one, other), (other, one)):
-        raster = unseen.seen.raster
+        raster = unseen.observation.raster
         is_opened = raster.is_opened(door_height_m)
         first_m, last_m = np.sort(unseen.line.along_m(shown.ends)).tolist()
         beside_m = ((first_m, min(last_m, unseen.low_m)), (max(first_m, unseen.high_m), last_m))

@@ -165,7 +165,12 @@ class _Assembly:
         self, wall: PlanWall, low_m: float, high_m: float, *, needs_lintel: bool = False
     ) -> Opening:
         return classify_gap(
-            *(wall.line, low_m, high_m, wall.lines, self.settings), needs_lintel=needs_lintel
+            wall.line,
+            low_m,
+            high_m,
+            wall.observations,
+            self.settings,
+            needs_lintel=needs_lintel,
         )
 
 
@@ -175,15 +180,15 @@ def _part(
     """Return what of a wall lies between two places, with those of its gaps that do."""
     middle_m = spans_m.mean(axis=1)
     is_inside = (begin_m < middle_m) & (middle_m < end_m)
-    faces = {id(face) for face, inside in zip(wall.members, is_inside, strict=True) if inside}
+    faces = {face for face, inside in zip(wall.members, is_inside, strict=True) if inside}
     of_part = [g for g in gaps if begin_m < (g.low_m + g.high_m) / 2 < end_m]
     of_part = [_between_sides(g, spans_m[is_inside]) for g in of_part]
     return replace(
         wall,
         low_m=float(spans_m[is_inside].min()),
         high_m=float(spans_m[is_inside].max()),
-        left=[face for face in wall.left if id(face) in faces],
-        right=[face for face in wall.right if id(face) in faces],
+        left=[face for face in wall.left if face in faces],
+        right=[face for face in wall.right if face in faces],
         openings=[g for g in of_part if g.state == OPEN],
         closed=[g for g in of_part if g.state == CLOSED],
     )

@@ -141,14 +141,14 @@ def select_plan(settings: Settings) -> Keywords:
     """Return what `planning.make_plan_settings` takes: keywords by part."""
     plan, building = select_section(settings, "plan"), settings["building"]
     walls = select_section(settings, "walls")
-    gap = {"max_gap_m": walls["max_gap_m"]}
+    most_gap = {"max_gap_m": walls["max_gap_m"]}
     low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
     thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
     furniture = {key: walls[key] for key in _OF_THE_PLAN}
     furniture |= {"furniture_height_m": building["furniture_height_m"]}
     return {
-        "merge": plan["merge"] | gap | {"corner_m": walls["corner_m"]},
-        "trace": plan["trace"] | gap | low,
+        "merge": plan["merge"] | most_gap | {"corner_m": walls["corner_m"]},
+        "trace": plan["trace"] | most_gap | low,
         "ranges": plan["ranges"],
         "furniture": furniture,
         "pair": plan["pair"] | thickness | {"max_angle_deg": _PAIR_MAX_ANGLE_DEG},

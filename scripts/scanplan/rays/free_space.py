@@ -38,8 +38,8 @@ def free_polygons(rays: RaySet) -> list[MultiPolygon]:
     """
     find_outline = _outline_of_beams if rays.planar else _outline_of_sectors
     outlines_m = (
-        sensor_m[:2] + find_outline(*way)
-        for sensor_m, way in zip(rays.sensors_m, rays.ways(), strict=True)
+        sensor_m[:2] + find_outline(*polar)
+        for sensor_m, polar in zip(rays.sensors_m, rays.headings(), strict=True)
     )
     return [_make_star(outline_m) for outline_m in outlines_m]
 

@@ -178,10 +178,10 @@ def remove_range_bias(
     def move_scan(scan: tuple[slice, FloatArray, FloatArray]) -> None:
         rows, sensor_m, axis = scan
         xyz_m = rays.xyz_m[rows]
-        way = xyz_m - sensor_m
-        range_m = np.maximum(_length(way), ROUNDING)
-        way *= (error_m[_degrees(way @ axis / range_m)] / range_m)[:, None]
-        np.subtract(xyz_m, way, out=moved[rows])
+        ray_m = xyz_m - sensor_m
+        range_m = np.maximum(_length(ray_m), ROUNDING)
+        ray_m *= (error_m[_degrees(ray_m @ axis / range_m)] / range_m)[:, None]
+        np.subtract(xyz_m, ray_m, out=moved[rows])
 
     scans = zip(rays.rows, rays.sensors_m, up, strict=True)
     workers.map_in_threads(move_scan, scans, threads)
@@ -209,19 +209,19 @@ def _hits(
             xyz_m[:, 2] <= segments["z_max_m"][group]
         )
     xyz_m, group, offset_m = xyz_m[kept], group[kept], offset_m[kept]
-    way = xyz_m - rays.sensors_m[scan[group]]
-    way /= np.maximum(_length(way), ROUNDING)[:, None]
-    cosine = -np.einsum("ij,ij->i", way[:, :2], normal[group])
-    along = way[:, 1] * normal[group, 0] - way[:, 0] * normal[group, 1]
-    beam = _degrees(np.einsum("ij,ij->i", way, up[scan[group]]))
+    direction = xyz_m - rays.sensors_m[scan[group]]
+    direction /= np.maximum(_length(direction), ROUNDING)[:, None]
+    cosine = -np.einsum("ij,ij->i", direction[:, :2], normal[group])
+    along = direction[:, 1] * normal[group, 0] - direction[:, 0] * normal[group, 1]
+    beam = _degrees(np.einsum("ij,ij->i", direction, up[scan[group]]))
     found = _Hits(
         group, beam, cosine, side_m[group] * along / np.maximum(cosine, ROUNDING), offset_m
     )
     return found.of(cosine >= np.cos(np.radians(settings.max_incidence_deg)))
 
 
-def _length(way: FloatArray) -> FloatArray:
-    return np.sqrt(np.einsum("ij,ij->i", way, way))
+def _length(vectors_m: FloatArray) -> FloatArray:
+    return np.sqrt(np.einsum("ij,ij->i", vectors_m, vectors_m))
 
 
 def _degrees(sine: FloatArray) -> IntArray:

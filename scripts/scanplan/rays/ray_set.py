@@ -99,7 +99,7 @@ class RaySet:
         See `usual_returns`.
         """
         usual = []
-        for (azimuth_rad, way_m), left_out in zip(self.ways(), self.left_out, strict=True):
+        for (azimuth_rad, way_m), left_out in zip(self.headings(), self.left_out, strict=True):
             known = slice(None)
             if left_out.any():
                 known = ~left_out[azimuth_sectors.number_sectors(azimuth_rad)]
@@ -110,15 +110,15 @@ class RaySet:
     def beams(self) -> beam_spread.PlanarBeams:
         """What planar scans show of the beams that their sensor sends."""
         left_out = map(azimuth_sectors.middles_rad, self.left_out)
-        scans = zip(self.ways(), left_out, strict=True)
-        return beam_spread.observe_beams((*ways, left_rad) for ways, left_rad in scans)
+        scans = zip(self.headings(), left_out, strict=True)
+        return beam_spread.observe_beams((*polar, left_rad) for polar, left_rad in scans)
 
     @property
     def rows(self) -> list[slice]:
         """The rows of each scan."""
         return [slice(a, b) for a, b in zip(self.first[:-1], self.first[1:], strict=True)]
 
-    def ways(self) -> Iterator[tuple[FloatArray, FloatArray]]:
+    def headings(self) -> Iterator[tuple[FloatArray, FloatArray]]:
         """Iterate over the azimuths (n,) of each scan's rays and the ways (n, 3) that they go."""
         for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True):
             yield self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m
@@ -143,8 +143,8 @@ class RaySet:
             Rows that a scan's two spans begin at and end before: what lies beyond pi goes on from
             -pi.
         """
-        way = ends - self.sensors_m[scans, :2]
-        first, last = np.arctan2(way[..., 1], way[..., 0])
+        to_ends_m = ends - self.sensors_m[scans, :2]
+        first, last = np.arctan2(to_ends_m[..., 1], to_ends_m[..., 0])
         turn = (last - first + np.pi) % (2 * np.pi) - np.pi
         begin = np.where(turn > 0, first, last)
         stop = begin + np.abs(turn)
@@ -247,8 +247,8 @@ def gather_rays(
         xyz_m = np.asarray(scan_xyz_m, float)
         if not np.isfinite(xyz_m).all():
             xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
-        way = xyz_m[:, :2] - sensors_m[scan_id][:2]
-        azimuth_rad = np.arctan2(way[:, 1], way[:, 0])
+        to_points_m = xyz_m[:, :2] - sensors_m[scan_id][:2]
+        azimuth_rad = np.arctan2(to_points_m[:, 1], to_points_m[:, 0])
         order = _argsort_stably(azimuth_rad)
         return scan_id, azimuth_rad[order], xyz_m.take(order, axis=0)
 

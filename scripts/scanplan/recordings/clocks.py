@@ -57,14 +57,14 @@ def describe_gaps(starts: Sequence[tuple[FilePath, int]]) -> list[str]:
     starts : sequence of (path-like, int)
         The recordings, and when each began in nanoseconds, the first first.
     """
-    gaps = [
+    pauses = [
         (timedelta(microseconds=(later[1] - earlier[1]) / 1000), earlier[0], later[0])
         for earlier, later in pairwise(starts)
     ]
-    far = [gap for gap in gaps if gap[0] > timedelta(days=1)]
+    far = [pause for pause in pauses if pause[0] > timedelta(days=1)]
     if not far:
         return []
-    widest, earlier_path, later_path = max(far, key=lambda gap: gap[0])
+    widest, earlier_path, later_path = max(far, key=lambda pause: pause[0])
     more = f", and {len(far) - 1} more lie more than a day after another" if far[1:] else ""
     return [
         f"recordings of one survey lie far apart in time: {later_path} begins"

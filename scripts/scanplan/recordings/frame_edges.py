@@ -171,13 +171,13 @@ def chain_poses(
         if edge.t_ns is None:
             pose = pose @ se3.pose_matrix(edge.xyz_m[0], edge.quat_xyzw[0])
             continue
-        xyz_m, quat, gap, inside = se3.interpolate_poses(
+        xyz_m, quat, apart_s, inside = se3.interpolate_poses(
             edge.t_ns, edge.xyz_m, edge.quat_xyzw, query_ns, max_gap_s=max_gap_s
         )
         pose = pose @ se3.pose_matrix(xyz_m, quat)
         jumping = pose_jumps.find_jumps(edge.t_ns, edge.xyz_m, max_speed_m_s=max_speed_m_s)
         inside &= ~pose_jumps.is_inside_jump(edge.t_ns, jumping, query_ns)
-        gap_s = np.maximum(gap_s, gap)
+        gap_s = np.maximum(gap_s, apart_s)
         covered &= inside
     pose[~covered] = np.nan
     return pose, gap_s, covered

@@ -113,25 +113,25 @@ class GridMapScans(PosedScans):
     def read_cloud(self, scan_id: int) -> tuple[FloatArray, Array | None]:
         """Return where beams from a place end, (n, 3) float32: in the first occupied cell."""
         angle = np.arange(_BEAMS) * 2 * np.pi / _BEAMS
-        way = np.column_stack([np.cos(angle), np.sin(angle)])
-        xy_m = _cast_beams(self._grid, self._xy_m[scan_id], way)
+        direction = np.column_stack([np.cos(angle), np.sin(angle)])
+        xy_m = _cast_beams(self._grid, self._xy_m[scan_id], direction)
         return np.column_stack([xy_m, np.zeros(_BEAMS)]).astype(np.float32), None
 
 
-def _cast_beams(grid: _Grid, from_m: FloatArray, way: FloatArray) -> FloatArray:
+def _cast_beams(grid: _Grid, from_m: FloatArray, direction: FloatArray) -> FloatArray:
     """Return the middles (n, 2), from there, of the first cells that beams (n, 2) meet occupied.
 
     NaN without one. Where a beam enters a cell is nearer than what was measured in it.
     """
     step_m = grid.cell_m / 4  # a beam cuts no corner of a cell by more
     along_m = np.arange(1, int(_REACH_M / step_m)) * step_m
-    ends_m = np.full((len(way), 2), np.nan)
-    is_going = np.ones(len(way), bool)
+    ends_m = np.full((len(direction), 2), np.nan)
+    is_going = np.ones(len(direction), bool)
     for part_m in np.array_split(along_m, max(1, len(along_m) // 64)):
         rows = np.flatnonzero(is_going)
         if len(rows) == 0:
             break
-        places = from_m + way[rows, None] * part_m[:, None]
+        places = from_m + direction[rows, None] * part_m[:, None]
         column, row = np.moveaxis(np.floor(places / grid.cell_m).astype(int), -1, 0)
         is_inside = (row >= 0) & (row < grid.free.shape[0])
         is_inside &= (column >= 0) & (column < grid.free.shape[1])

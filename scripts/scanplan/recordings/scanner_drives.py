@@ -147,20 +147,20 @@ class ScannerDrives:
             Of each scanner, over the same time.
         """
         parts = [_part_chain(chain) for chain in chains]
-        ways = [[(edge.parent, edge.child) for edge in way[:-1]] for way, _ in parts]
+        frames = [[(edge.parent, edge.child) for edge in rigid[:-1]] for rigid, _ in parts]
         mounts = [mount for _, mount in parts]
         is_apart = all(
             np.abs(one - other).max() > SHORTEST_M
             for i, one in enumerate(mounts)
             for other in mounts[:i]
         )
-        if any(way != ways[0] for way in ways) or not parts[0][0] or not is_apart:
+        if any(rigid != frames[0] for rigid in frames) or not parts[0][0] or not is_apart:
             return None
         joined = []
-        for edges in zip(*(way for way, _ in parts), strict=True):
+        for edges in zip(*(rigid for rigid, _ in parts), strict=True):
             moving = [(edge.t_ns, edge.xyz_m, edge.quat_xyzw) for edge in edges]
             joined.append(self._join_edges(edges[0], moving))
-        times_ns = [np.unique(np.concatenate(_times_of(way))) for way, _ in parts]
+        times_ns = [np.unique(np.concatenate(_times_of(rigid))) for rigid, _ in parts]
         still = [
             (t_ns, *se3.split_pose(np.repeat(mount[None], len(t_ns), axis=0)))
             for t_ns, mount in zip(times_ns, mounts, strict=True)

@@ -96,29 +96,29 @@ class FrameTree:
         """
         if len(edges) == 1:
             return edges[0]
-        ways = [self._climb_rigid(edge) for edge in edges]
-        reached = [[edge.parent for edge in way] for way in ways]
+        climbs = [self._climb_rigid(edge) for edge in edges]
+        reached = [[edge.parent for edge in climb] for climb in climbs]
         common = [frame for frame in reached[0] if all(frame in others for others in reached)]
         if not common:
             return None
         ends = [others.index(common[0]) + 1 for others in reached]
-        first, *rest = (_multiply(way[:end]) for way, end in zip(ways, ends, strict=True))
+        first, *rest = (_multiply(climb[:end]) for climb, end in zip(climbs, ends, strict=True))
         for pose in rest:
             off_m = float(np.abs(first - pose)[:3, 3].max())
             if max(off_m, se3.turn_between_rad(first, pose)) > SHORTEST_M:
                 return None
-        return min(zip(ends, edges, strict=True), key=lambda way: (way[0], way[1].parent))[1]
+        return min(zip(ends, edges, strict=True), key=lambda climb: (climb[0], climb[1].parent))[1]
 
     def _climb_rigid(self, edge: FrameEdge) -> list[FrameEdge]:
         """Return an edge and those above it, as far as they never change and there is one way."""
-        way: list[FrameEdge] = []
+        climb: list[FrameEdge] = []
         parents = [edge]
         met = {edge.child}
         while len(parents) == 1 and parents[0].t_ns is None and parents[0].parent not in met:
-            way.append(parents[0])
+            climb.append(parents[0])
             met.add(parents[0].parent)
             parents = list(self._edges.get(parents[0].parent, {}).values())
-        return way
+        return climb
 
     def path(self, start: str, end: str) -> list[FrameEdge] | None:
         """Return the edges whose product is start_from_end, or None if there is no way between.
@@ -136,9 +136,9 @@ class FrameTree:
             if frame in above_end:
                 ascent = [edge.inverse() for edge in rising[:i]]
                 descent = falling[: above_end.index(frame)]
-                way = ascent + descent[::-1]
-                _check_constants(way)
-                return way
+                edges = ascent + descent[::-1]
+                _check_constants(edges)
+                return edges
         error = end_error or start_error
         if error is not None:
             raise error
@@ -185,10 +185,10 @@ class FrameTree:
         return next((name for name in ("map", "odom") if name in above), above[-1])
 
 
-def _multiply(way: Sequence[FrameEdge]) -> FloatArray:
+def _multiply(edges: Sequence[FrameEdge]) -> FloatArray:
     """Return the pose (4, 4) of the lowest frame of constant edges, nearest first, in the top."""
     pose = np.eye(4)
-    for edge in way:
+    for edge in edges:
         pose = se3.pose_matrix(edge.xyz_m, edge.quat_xyzw)[0] @ pose
     return pose
 

@@ -68,10 +68,10 @@ def _list_shapes(survey: Survey) -> Iterator[tuple[str, BaseGeometry]]:
     plan = survey.plan
     for piece in shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)):
         yield "furniture", survey.place(piece)
-    gaps = plan.all_gaps
-    walls = overlays.subtract_areas(overlays.unite_areas(plan.bodies), gaps)
+    open_areas = plan.all_gaps
+    walls = overlays.subtract_areas(overlays.unite_areas(plan.bodies), open_areas)
     yield "wall", survey.place(walls)
-    yield "opening", survey.place(gaps)
+    yield "opening", survey.place(open_areas)
 
 
 def _format_path(shape: BaseGeometry) -> str:

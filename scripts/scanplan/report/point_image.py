@@ -85,11 +85,11 @@ def _between_levels(xyz_m: Array, plan: FloorPlan) -> Array:
 def _shade(counts: IntArray) -> Array:
     """Return shades (n,) uint8: 0 of nothing; many points above each other stand out."""
     shades = np.zeros(len(counts), np.uint8)
-    seen = counts > 0
-    if seen.any():
-        depth = np.log1p(counts[seen])
+    is_hit = counts > 0
+    if is_hit.any():
+        depth = np.log1p(counts[is_hit])
         share = np.minimum(depth / np.percentile(depth, 99), 1)
-        shades[seen] = 1 + np.round(share * (_SHADES - 2))
+        shades[is_hit] = 1 + np.round(share * (_SHADES - 2))
     return shades
 
 

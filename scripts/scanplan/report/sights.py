@@ -71,8 +71,8 @@ def find_sights(
         for element, what in asked.items():
             worth, scan = _choose_scan(plan, rays, what)
             if worth > found.get(element, ((0, 0.0),))[0]:
-                seen = _list_ends(plan, rays, scan, what)
-                found[element] = worth, int(rays.scan_ids[scan]), seen
+                ends = _list_ends(plan, rays, scan, what)
+                found[element] = worth, int(rays.scan_ids[scan]), ends
     sights = {}
     for element, ((_, far_m), scan_id, ends_cm) in found.items():
         row, what = row_of[scan_id], asked[element]
@@ -170,5 +170,5 @@ def trace_way(registered: RegisteredScans) -> FloatArray:
     """Return the sensor's way (n, 2), map frame, as far as a drawing shows it."""
     places_m = registered.map_from_sensor[:, :2, 3]
     # a single scan is a way, too
-    way = shapely.LineString(np.concatenate([places_m[:1], places_m]))
-    return shapely.get_coordinates(overlays.simplify_shapes(way, _CELL_M))
+    track = shapely.LineString(np.concatenate([places_m[:1], places_m]))
+    return shapely.get_coordinates(overlays.simplify_shapes(track, _CELL_M))

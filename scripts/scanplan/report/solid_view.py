@@ -80,8 +80,8 @@ def describe_heights(plan: FloorPlan) -> str:
         return f"Heights are not known: walls are drawn {height} high, as assumed."
     if plan.height_from == "ceiling":
         return f"The ceiling is {height} above the floor."
-    seen = "the highest wall that was seen" if plan.height_from == "walls" else "assumed"
-    return f"The ceiling was not seen: walls are drawn {height} high, as {seen}."
+    source = "the highest wall that was seen" if plan.height_from == "walls" else "assumed"
+    return f"The ceiling was not seen: walls are drawn {height} high, as {source}."
 
 
 def count_steps(

@@ -22,13 +22,13 @@ def summarise_survey(plan: floorplan.FloorPlan, survey: SurveyFacts) -> str:
         Each line ends with a newline; what is longer than the console is wide goes on below.
     """
     rooms, walls, openings = plan.rooms, plan.walls, plan.openings
-    ways = [
+    counts = [
         _count(int((openings["type"] == kind).sum()), noun)
         for kind, noun in floorplan.OPENINGS.items()
     ]
     found = (
         f"{_count(len(rooms['room']), 'room')}, {_state_floor(plan)};"
-        f" {', '.join(ways)}; {_count(len(walls['wall']), 'wall')},"
+        f" {', '.join(counts)}; {_count(len(walls['wall']), 'wall')},"
         f" {page_tables.wall_lengths_m(plan).sum():,.1f} m"
     )
     doubts = [

@@ -79,6 +79,6 @@ def measure_share_through_walls(plan: FloorPlan, track_m: FloatArray) -> float:
     steps = steps[(length_m > SHORTEST_M) & (length_m <= 2 * (CORNER_M + STRETCH_M))]
     if len(steps) < ENOUGH_RAYS:
         return 0.0
-    ways = overlays.unite_areas(overlays.buffer_shapes(plan.gaps, END_M, quad_segs=8))
-    walls = overlays.subtract_lines(overlays.unite_lines(plan.axes), ways)
+    open_area = overlays.unite_areas(overlays.buffer_shapes(plan.gaps, END_M, quad_segs=8))
+    walls = overlays.subtract_lines(overlays.unite_lines(plan.axes), open_area)
     return float(shapely.intersects(steps, walls).mean())

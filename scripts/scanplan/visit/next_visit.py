@@ -124,11 +124,11 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     if not chosen:
         return _Stops(np.empty(0, np.int64), [])
     places_m = [start_m.tolist(), *views.place_m[chosen].tolist()]
-    ways = StopWays(grid, np.array([roadmap.nearest_cell(grid, place) for place in places_m]))
-    order = tour.shortest_tour(ways, closed=False, first=0)
+    paths = StopWays(grid, np.array([roadmap.nearest_cell(grid, place) for place in places_m]))
+    order = tour.shortest_tour(paths, closed=False, first=0)
     ways_m = []
     for before, after in pairwise(order):
-        cells = ways.trace(before, after)
+        cells = paths.trace(before, after)
         corners_m = grid.xy_m[[cells[0], *cells]]
         straight = overlays.simplify_shapes(shapely.linestrings(corners_m), 0)
         ways_m.append(shapely.get_coordinates(straight))

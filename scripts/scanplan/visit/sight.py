@@ -49,11 +49,11 @@ def block_sight(plan: FloorPlan, height_m: float) -> BaseGeometry:
     is_low = plan.low & (plan.heights_m < height_m)
     is_way = np.isin(plan.openings["type"].astype(str), WAYS)
     loose = plan.faces["wall"] < 0
-    ways = overlays.unite_areas(plan.gaps[is_way])
+    open_area = overlays.unite_areas(plan.gaps[is_way])
     walls = overlays.unite_areas(plan.bodies[~is_low])
     surfaces = overlays.unite_lines(line_shapes(centrelines_m(plan.faces)[loose]))
     return overlays.unite_shapes(
-        [overlays.subtract_areas(walls, ways), overlays.subtract_lines(surfaces, ways)]
+        [overlays.subtract_areas(walls, open_area), overlays.subtract_lines(surfaces, open_area)]
     )
 
 

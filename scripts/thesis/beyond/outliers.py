@@ -147,8 +147,8 @@ def cover_by_each(
         for name, radius in ((TRIMMED, sampling["radius"]), (CLUSTERS, "none")):
             own = {**sampling, "radius": radius}
             made[name].append(hulls.make_cluster_hulls(scan_id, xyz_m, **own))
-        seen = visibility_polygon.scan_free_space(scan_id, xyz_m, settings=visibility, **where)
-        free.append(shapely.from_wkb(seen["geometry"]))
+        columns = visibility_polygon.scan_free_space(scan_id, xyz_m, settings=visibility, **where)
+        free.append(shapely.from_wkb(columns["geometry"]))
         observed.append(
             wall_cells.observe_wall_cells(
                 scan_id, xyz_m, settings=cells, axes_deg=axes_deg or 0, **where
@@ -162,8 +162,8 @@ def cover_by_each(
         FREE_SPACE: np.array(free, object),
     }
     covered = {name: area_greedy.order_by_area(own) for name, own in shapes.items()}
-    seen = wall_cells.observation_columns(scan_ids, observed)
-    lengths = objectives.cover_wall_length(SurveyScans(scan_ids, {"observations": seen}))
+    columns = wall_cells.observation_columns(scan_ids, observed)
+    lengths = objectives.cover_wall_length(SurveyScans(scan_ids, {"observations": columns}))
     covered[WALL_LENGTH] = lengths.greedy()
     return {name: (float(own.covered[-1]), own.order) for name, own in covered.items()}
 

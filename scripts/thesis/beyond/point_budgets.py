@@ -89,11 +89,11 @@ def compare_budgets(
             found = measure_walls(truth, findings, rows)
             measured += _as_measurements(method, size, found, int(store.n_points[rows].sum()))
         voxel_m = find_voxel(sample, share, planar=store.planar)
-        ways: dict[str, Thinning] = {
+        thinnings: dict[str, Thinning] = {
             VOXELS: partial(thin_by_voxels, voxel_m, store.planar),
             RANDOM_POINTS: partial(thin_at_random, share, seed),
         }
-        for name, thin in ways.items():
+        for name, thin in thinnings.items():
             for case, own in ((name, search), (name + LOWERED, lower_limits(search, share))):
                 measured += _measure_thinned(truth, store, thin, own, (case, size), cell_m)
         yield measured

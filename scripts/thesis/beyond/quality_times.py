@@ -107,7 +107,7 @@ def time_orders(
     """
     scans = SurveyScans(survey.truth.registered.scan_ids)
     places_m = survey.truth.registered.map_from_sensor[:, :2, 3]
-    ways: dict[str, Callable[[], IntArray]] = {
+    methods: dict[str, Callable[[], IntArray]] = {
         "every_nth": partial(baselines.order_every_nth, scans),
         "distance": partial(baselines.order_farthest_first, places_m),
         "cluster_hull": partial(_order_by_hulls, survey, sampling),
@@ -115,7 +115,7 @@ def time_orders(
     }
     # the first call loads what all others use
     _order_by_hulls(survey, sampling, most=1)
-    return {method: time_call(way) for method, way in ways.items()}
+    return {method: time_call(choose) for method, choose in methods.items()}
 
 
 def time_to_quality(

@@ -56,13 +56,13 @@ def measure_sensitivity(
     def change_cell(factor: float) -> tuple[Findings, IntArray]:
         return match_walls(survey.truth, survey.walls, factor * cell_m), order
 
-    ways: dict[str, Callable[[float], tuple[Findings, IntArray]]] = {
+    changes: dict[str, Callable[[float], tuple[Findings, IntArray]]] = {
         "inlier band of RANSAC": partial(change_walls, "inlier_m"),
         "bandwidth of the mean shift": partial(change_walls, "bandwidth_m"),
         "sample of KMeans": change_sample,
         "cell of the bitmaps": change_cell,
     }
-    for name, change in ways.items():
+    for name, change in changes.items():
         for factor in factors:
             findings, chosen = (usual, order) if factor == 1 else change(factor)
             margins = judge_claims_of(survey.truth, findings, chosen, sampling["seed"])

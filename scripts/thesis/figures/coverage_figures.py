@@ -30,7 +30,7 @@ def draw_hulls_figure(
     place_m: FloatArray,
     full: BaseGeometry,
     clusters: Sequence[BaseGeometry] | Array,
-    seen: BaseGeometry,
+    seen_area: BaseGeometry,
 ) -> Figure:
     """Draw one scan's hull, its clusters' hulls and what it truly sees (figure 3.2).
 
@@ -47,7 +47,7 @@ def draw_hulls_figure(
     panels = (
         ("a: one convex hull", [full], _HULL),
         (f"b: hulls of {len(clusters)} clusters", list(clusters), _CLUSTERS),
-        ("c: what the scan truly sees", [seen], _TRUTH),
+        ("c: what the scan truly sees", [seen_area], _TRUTH),
     )
     frames = figure.subplots(1, 3, sharex=True, sharey=True)
     for axes, (title, shapes, colour) in zip(frames, panels, strict=True):

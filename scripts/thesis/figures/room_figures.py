@@ -185,14 +185,16 @@ def draw_wall_panels(
 
 def _draw_typical_hulls(survey: RoomSurvey) -> Figure:
     """Draw the scan whose full hull exceeds what it sees by the median of all scans."""
-    row, full, seen = _find_typical_scan(survey)
+    row, full, seen_area = _find_typical_scan(survey)
     scan_id = survey.scan_ids[row]
     is_cluster = survey.hulls["cluster"] != hulls.OUTLIERS
     is_of_scan = (survey.hulls["scan_id"] == scan_id) & is_cluster
     shapes = shapely.from_wkb(survey.hulls["geometry"][is_of_scan])
     clusters = shapes[shapely.get_dimensions(shapes) == 2]
     points_m = survey.store.read(scan_id)[:, :2]
-    return coverage_figures.draw_hulls_figure(points_m, survey.places_m[row], full, clusters, seen)
+    return coverage_figures.draw_hulls_figure(
+        points_m, survey.places_m[row], full, clusters, seen_area
+    )
 
 
 def _draw_typical_steps(survey: RoomSurvey) -> Figure:
@@ -210,10 +212,12 @@ def _draw_typical_steps(survey: RoomSurvey) -> Figure:
 def _find_typical_scan(survey: RoomSurvey) -> tuple[int, BaseGeometry, BaseGeometry]:
     """Return the row of the scan whose hull exceeds what it sees by the median, hull and view."""
     _, full = hulls.scan_full_hulls(survey.hulls)
-    seen = coverage.seen_polygons(survey.faces, survey.places_m, max_range_m=survey.max_range_m)
-    ratio = np.asarray(shapely.area(full) / shapely.area(seen))
+    seen_areas = coverage.seen_polygons(
+        survey.faces, survey.places_m, max_range_m=survey.max_range_m
+    )
+    ratio = np.asarray(shapely.area(full) / shapely.area(seen_areas))
     row = int(np.argsort(ratio, kind="stable")[len(ratio) // 2])
-    return row, full[row], seen[row]
+    return row, full[row], seen_areas[row]
 
 
 def _make_panels(shown_m: FloatArray, count: int) -> tuple[Figure, Sequence[Axes]]:

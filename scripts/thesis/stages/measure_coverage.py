@@ -53,16 +53,16 @@ def measure_coverage(
     poses = truth_file.read_true_poses(true_poses)
     places_m = truth_file.interpolate_true_poses(poses, registered.t_ns, true_poses)[:, :2, 3]
     faces = truth_file.read_true_faces(truth)
-    seen = coverage.seen_polygons(faces, places_m, max_range_m=max_range_m)
+    seen_areas = coverage.seen_polygons(faces, places_m, max_range_m=max_range_m)
     columns = tables.read_table(built, schemas.HULLS)
     _, full_hulls = hulls.scan_full_hulls(columns)
     _, cluster_hulls = hulls.scan_polygons(columns)
     measures = {
-        "seen_m2": shapely.area(seen),
+        "seen_m2": shapely.area(seen_areas),
         "full_hull_m2": shapely.area(full_hulls),
         "cluster_hull_m2": shapely.area(cluster_hulls),
-        "full_hull_iou": coverage.polygon_iou(full_hulls, seen),
-        "cluster_hull_iou": coverage.polygon_iou(cluster_hulls, seen),
+        "full_hull_iou": coverage.polygon_iou(full_hulls, seen_areas),
+        "cluster_hull_iou": coverage.polygon_iou(cluster_hulls, seen_areas),
     }
     strays = per_scan.map_scans(
         partial(coverage.stray_area_columns, **sampling),

@@ -109,6 +109,6 @@ def _place(
 
 
 def _check_identifiers(model: ifcopenshell.file) -> None:
-    seen = [root.GlobalId for root in model.by_type("IfcRoot")]
-    if len(set(seen)) < len(seen):
+    guids = [root.GlobalId for root in model.by_type("IfcRoot")]
+    if len(set(guids)) < len(guids):
         raise ValueError("two storeys share GlobalIds")

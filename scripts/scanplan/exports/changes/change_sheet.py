@@ -11,10 +11,10 @@ from scanplan.changes.comparison import Comparison
 from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, STATES
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.changes.compared_sheet import (
+    Arrow,
     ComparedFacts,
     Overlay,
     Told,
-    Way,
     compose_compared_sheet,
     draw_areas,
     say_tie,
@@ -49,14 +49,14 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         for of in drawn
         if of.change.table in _TAGGED and of.change.is_told
     ]
-    ways = [
-        Way(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
+    arrows = [
+        Arrow(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
         for of in drawn
         if of.change.verdict == MOVED and of.change.table != "room"
     ]
     return compose_compared_sheet(
         f"{compared.b.plan.name} against {compared.a.plan.name}",
-        Overlay(list(_draw(compared, drawn)), symbols, told, ways),
+        Overlay(list(_draw(compared, drawn)), symbols, told, arrows),
         facts.locale,
         turn_deg=-compared.a.plan.main_direction_deg,
         list_values=lambda page: _list_values(compared, facts, page),

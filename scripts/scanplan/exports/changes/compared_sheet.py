@@ -27,7 +27,7 @@ from scanplan.exports.sheet.title import SheetFacts
 from scanplan.types import FloatArray
 
 _MOST_ROWS = 40  # of the table: more are in the files beside
-_LEAST_WAY_MM = 2.5  # an arrow of less is not seen, and drawn as long
+_LEAST_ARROW_MM = 2.5  # an arrow of less is not seen, and drawn as long
 _TAG_MM = (2.5, 4.0, 6.0)  # from the middle of an element to its number
 _ELEMENT = 1  # of the columns: what is cut off where a row is longer than a slot is wide
 
@@ -57,7 +57,7 @@ class Told:
 
 
 @dataclass(frozen=True, eq=False)
-class Way:
+class Arrow:
     """From where something stood to where it stands: a place (2,) and a way (2,), metres."""
 
     from_m: FloatArray
@@ -71,7 +71,7 @@ class Overlay:
     marks: Sequence[Mark]
     symbols: Sequence[Symbol]
     told: Sequence[Told]
-    ways: Sequence[Way] = ()
+    arrows: Sequence[Arrow] = ()
 
 
 def compose_compared_sheet(
@@ -98,7 +98,7 @@ def compose_compared_sheet(
     page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, blocks)
     page = replace(page, locale=locale)
     bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
-    marks += [_draw_way(way, page) for way in drawn.ways]
+    marks += [_draw_arrow(arrow, page) for arrow in drawn.arrows]
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
         *title.draw_block(page, list_values(page)),
@@ -137,16 +137,16 @@ def draw_areas(kind: str, shape: BaseGeometry, element: str) -> Iterator[Mark]:
             yield Mark(kind, paths, True, element)
 
 
-def _draw_way(way: Way, page: Page) -> Mark:
+def _draw_arrow(arrow: Arrow, page: Page) -> Mark:
     """Return an arrow as long as is seen."""
-    length_m = float(np.hypot(*way.by_m))
-    along = way.by_m / length_m
+    length_m = float(np.hypot(*arrow.by_m))
+    along = arrow.by_m / length_m
     side = np.array([-along[1], along[0]])
-    tip_m = way.from_m + along * max(length_m, _LEAST_WAY_MM / page.mm_per_m)
+    tip_m = arrow.from_m + along * max(length_m, _LEAST_ARROW_MM / page.mm_per_m)
     head_m = 1.5 / page.mm_per_m
     base_m = tip_m - head_m * along
-    corners = [way.from_m, base_m, base_m + head_m / 3 * side, tip_m, base_m - head_m / 3 * side]
-    return Mark("way", [straight(np.array([*corners, base_m, way.from_m]))], True)
+    corners = [arrow.from_m, base_m, base_m + head_m / 3 * side, tip_m, base_m - head_m / 3 * side]
+    return Mark("way", [straight(np.array([*corners, base_m, arrow.from_m]))], True)
 
 
 def _draw_table(
@@ -204,6 +204,6 @@ def _place_tags(page: Page, told: Sequence[Told], marks: Sequence[Mark]) -> Iter
 def _candidates(text: str, middle: FloatArray) -> Iterator[Candidate]:
     for far in _TAG_MM:
         for turn_deg in range(0, 360, 45):
-            way = rotation(turn_deg)[:, 0]
-            word = Word("width", text, middle + far * way, Letters.MEDIUM)
+            direction = rotation(turn_deg)[:, 0]
+            word = Word("width", text, middle + far * direction, Letters.MEDIUM)
             yield Candidate([word], far)

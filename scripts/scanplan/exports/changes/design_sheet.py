@@ -21,10 +21,10 @@ from scanplan.design.deviations import (
     Deviation,
 )
 from scanplan.exports.changes.compared_sheet import (
+    Arrow,
     ComparedFacts,
     Overlay,
     Told,
-    Way,
     compose_compared_sheet,
     draw_areas,
     say_tie,
@@ -69,15 +69,15 @@ def compose_design_sheet(
         Told(say_deviation(of, facts.locale.fine[0], facts.locale.say), of.change.shape)
         for of in faults
     ]
-    ways = [
-        Way(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
+    arrows = [
+        Arrow(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
         for of in faults
         if math.isfinite(of.change.moved_m[0])
     ]
     design = found.compared.a.plan
     return compose_compared_sheet(
         f"{found.compared.b.plan.name} against its design",
-        Overlay(list(_draw(found, drawn)), [], words, ways),
+        Overlay(list(_draw(found, drawn)), [], words, arrows),
         facts.locale,
         turn_deg=-design.main_direction_deg,
         list_values=lambda page: _list_values(found, told, tolerances, facts, page),

@@ -63,11 +63,11 @@ class CloudPicture:
         return file.getvalue()
 
     def _shade_heights(self) -> Array:
-        seen = np.isfinite(self._top_m)
+        is_hit = np.isfinite(self._top_m)
         shades = np.full(self._top_m.shape, _PAPER, np.uint8)
-        if seen.any():
+        if is_hit.any():
             # returns through windows and off mirrors lie far below floors
-            low_m, high_m = np.percentile(self._top_m[seen], [5, 95])
-            share = (self._top_m[seen] - low_m) / max(high_m - low_m, 1e-6)
-            shades[seen] = np.interp(share, (0, 1), _GREYS).round()
+            low_m, high_m = np.percentile(self._top_m[is_hit], [5, 95])
+            share = (self._top_m[is_hit] - low_m) / max(high_m - low_m, 1e-6)
+            shades[is_hit] = np.interp(share, (0, 1), _GREYS).round()
         return shades

@@ -174,8 +174,8 @@ def _say_swing(plan: FloorPlan, row: int, item: Item, swing: Any) -> Item:
         return usual if swing is None else usual | {"type": "sliding"}
     line_m = floorplan.centrelines_m(plan.openings)[row]
     host_m = floorplan.centrelines_m(plan.walls)[plan.hosts[row]]
-    way = line_m[1] - line_m[0]
-    is_along_host = bool(way @ (host_m[1] - host_m[0]) > 0)
+    direction = line_m[1] - line_m[0]
+    is_along_host = bool(direction @ (host_m[1] - host_m[0]) > 0)
     # of its own line: hinged at its start if opened to the left with the one block, else the other
     is_to_left = not swing.is_reversed
     is_at_start = (swing.block != "SWING-RIGHT") == is_to_left

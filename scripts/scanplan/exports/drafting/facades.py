@@ -29,10 +29,10 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     behind = find_behind(plan)[:, None]
     places_m = lines_m[:, None, 0] + along_m[:, None] * _SHARES[:, None]
     ways_m = np.stack([places_m + _NEAR_M * behind, places_m + _ACROSS_M * behind], axis=2)
-    ways = line_shapes(ways_m.reshape(-1, 2, 2))
+    sights = line_shapes(ways_m.reshape(-1, 2, 2))
     tree = shapely.STRtree([*line_shapes(lines_m), *plan.areas])
-    way, _ = tree.query(ways, predicate="intersects")
-    is_blocked = np.isin(np.arange(len(ways)), way).reshape(len(lines_m), len(_SHARES))
+    sight, _ = tree.query(sights, predicate="intersects")
+    is_blocked = np.isin(np.arange(len(sights)), sight).reshape(len(lines_m), len(_SHARES))
     no_floor = {name: values[:0] for name, values in plan.free.items()}
     building = envelope.outline_plan(replace(plan, free=no_floor))
     is_blocked |= shapely.contains_xy(building, ways_m[:, :, 1, 0], ways_m[:, :, 1, 1])
@@ -65,7 +65,7 @@ def limit_backs(walls: WallLines, behind_m: FloatArray) -> FloatArray:
     back = np.where(walls.is_seen_from_left, -1.0, 1.0)[:, None] * left_normals(walls.lines_m)
     for wall in np.flatnonzero(is_single).tolist():
         depth_m = (walls.lines_m - walls.lines_m[wall, 0]) @ back[wall]
-        along_m = (walls.lines_m - walls.lines_m[wall, 0]) @ walls.ways[wall]
+        along_m = (walls.lines_m - walls.lines_m[wall, 0]) @ walls.directions[wall]
         low_m, high_m = along_m.min(axis=1), along_m.max(axis=1)
         common_m = np.minimum(high_m, walls.lengths_m[wall]) - np.maximum(low_m, 0.0)
         is_recess = is_single & (back @ back[wall] >= _ALONG) & (common_m > walls.lengths_m / 2)

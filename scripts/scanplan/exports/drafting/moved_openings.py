@@ -75,8 +75,8 @@ def _place_along(ends_m: FloatArray, wanted_m: FloatArray, line_m: FloatArray) -
     """Return the ends (m, 2, 2) of a wall's openings on its line, as wide as there is room."""
     way_m = line_m[1] - line_m[0]
     length_m = float(np.hypot(*way_m))
-    way = way_m / length_m
-    along_m = (ends_m - line_m[0]) @ way
+    direction = way_m / length_m
+    along_m = (ends_m - line_m[0]) @ direction
     low_m, high_m = along_m.min(axis=1), along_m.max(axis=1)
     grown_m = (wanted_m - (high_m - low_m)) / 2
     for row in range(len(along_m)):
@@ -91,4 +91,4 @@ def _place_along(ends_m: FloatArray, wanted_m: FloatArray, line_m: FloatArray) -
         high_m[row] += grown_m[row]
     is_reversed = along_m[:, 0] > along_m[:, 1]
     first_m, second_m = np.where(is_reversed, high_m, low_m), np.where(is_reversed, low_m, high_m)
-    return line_m[0] + np.stack([first_m, second_m], axis=1)[..., None] * way
+    return line_m[0] + np.stack([first_m, second_m], axis=1)[..., None] * direction

@@ -61,11 +61,11 @@ def _find_host(edge_m: FloatArray, moved: MovedWalls) -> int:
     length_m = np.hypot(*along_m)
     if length_m < _LEAST_EDGE_M:
         return -1
-    way = along_m / length_m
-    sines = np.abs(walls.ways[:, 0] * way[1] - walls.ways[:, 1] * way[0])
+    direction = along_m / length_m
+    sines = np.abs(walls.directions[:, 0] * direction[1] - walls.directions[:, 1] * direction[0])
     to_m = edge_m.mean(axis=0) - walls.lines_m[:, 0]
-    across_m = to_m[:, 1] * walls.ways[:, 0] - to_m[:, 0] * walls.ways[:, 1]
-    ahead_m = np.einsum("ij,ij->i", to_m, walls.ways)
+    across_m = to_m[:, 1] * walls.directions[:, 0] - to_m[:, 0] * walls.directions[:, 1]
+    ahead_m = np.einsum("ij,ij->i", to_m, walls.directions)
     off_m = np.abs(np.abs(across_m) - walls.half_m)
     beyond_m = np.maximum(-ahead_m, ahead_m - walls.lengths_m)
     is_on = (sines <= _ALONG_SINE) & (off_m <= ON_M) & (beyond_m <= END_M)
@@ -77,13 +77,13 @@ def _find_host(edge_m: FloatArray, moved: MovedWalls) -> int:
 
 def _meet(before_m: FloatArray, after_m: FloatArray) -> list[FloatArray]:
     """Return the corner (2,) of two edges that lie on walls; two where they run on as one."""
-    ways = [line_m[1] - line_m[0] for line_m in (before_m, after_m)]
-    ways = [way / np.hypot(*way) for way in ways]
-    sine = ways[0][0] * ways[1][1] - ways[0][1] * ways[1][0]
+    directions = [line_m[1] - line_m[0] for line_m in (before_m, after_m)]
+    directions = [direction / np.hypot(*direction) for direction in directions]
+    sine = directions[0][0] * directions[1][1] - directions[0][1] * directions[1][0]
     ends_m = [before_m[1], after_m[0]]
     if abs(sine) < _CORNER_SINE:
         is_one = np.hypot(*(ends_m[1] - ends_m[0])) < 1e-6
         return ends_m[:1] if is_one else ends_m
     to_m = after_m[0] - before_m[1]
-    along_m = (to_m[0] * ways[1][1] - to_m[1] * ways[1][0]) / sine
-    return [before_m[1] + along_m * ways[0]]
+    along_m = (to_m[0] * directions[1][1] - to_m[1] * directions[1][0]) / sine
+    return [before_m[1] + along_m * directions[0]]

@@ -34,7 +34,7 @@ class MovedWalls:
 
     def find_offset_m(self, points_m: FloatArray, wall: int) -> FloatArray:
         """Return how far points (..., 2) lay to the left of a wall's line, (...,)."""
-        return (points_m - self.before.lines_m[wall, 0]) @ _left_of(self.before.ways[wall])
+        return (points_m - self.before.lines_m[wall, 0]) @ _left_of(self.before.directions[wall])
 
     def move_points(self, points_m: FloatArray, wall: int) -> FloatArray:
         """Return points (..., 2) beside or on a wall's line as far from where it is now.
@@ -74,20 +74,20 @@ def join_ends(walls: WallLines, lines_m: FloatArray, thickness_m: FloatArray) ->
     joined_m = np.array(lines_m, float)
     apart_m, reach_m = _measure_gaps(walls, CORNER_M)
     own = np.arange(len(apart_m)) // 2
-    is_met = (apart_m <= reach_m) & _is_turned(walls.ways)[own]
+    is_met = (apart_m <= reach_m) & _is_turned(walls.directions)[own]
     is_met &= ~walls.is_bent & ~walls.is_bent[own][:, None]
     nearest = np.where(is_met, apart_m - walls.half_m, np.inf)
     drawn_half_m = thickness_m / 2
     for end in np.flatnonzero(is_met.any(axis=1)).tolist():
         wall, other = int(own[end]), int(np.argmin(np.round(nearest[end], 6)))
         way_m = lines_m[wall, 1] - lines_m[wall, 0]
-        way = way_m / np.hypot(*way_m)
-        along_m = _cross_along(lines_m[wall, end % 2], way, lines_m[other])
+        direction = way_m / np.hypot(*way_m)
+        along_m = _cross_along(lines_m[wall, end % 2], direction, lines_m[other])
         # as far as the walls met, and what their sides are drawn farther off
         limit_m = reach_m[end, other] + drawn_half_m[wall] + drawn_half_m[other]
         is_turned_over = (along_m if end % 2 == 0 else -along_m) >= np.hypot(*way_m)
         if abs(along_m) <= limit_m and not is_turned_over:
-            joined_m[wall, end % 2] = lines_m[wall, end % 2] + along_m * way
+            joined_m[wall, end % 2] = lines_m[wall, end % 2] + along_m * direction
     too_short = np.hypot(*(joined_m[:, 1] - joined_m[:, 0]).T) < END_M / 10
     is_reversed = np.einsum("ij,ij->i", *(m[:, 1] - m[:, 0] for m in (joined_m, lines_m))) <= 0
     bad = too_short | is_reversed
@@ -121,19 +121,24 @@ def _measure_gaps(walls: WallLines, near_m: float) -> tuple[FloatArray, FloatArr
     return apart_m, walls.half_m[own][:, None] + walls.half_m + near_m
 
 
-def _is_turned(ways: FloatArray) -> BoolArray:
-    return np.abs(ways[:, None, 0] * ways[:, 1] - ways[:, None, 1] * ways[:, 0]) >= _LEAST_SINE
+def _is_turned(directions: FloatArray) -> BoolArray:
+    return (
+        np.abs(
+            directions[:, None, 0] * directions[:, 1] - directions[:, None, 1] * directions[:, 0]
+        )
+        >= _LEAST_SINE
+    )
 
 
-def _cross_along(place_m: FloatArray, way: FloatArray, line_m: FloatArray) -> float:
+def _cross_along(place_m: FloatArray, direction: FloatArray, line_m: FloatArray) -> float:
     """Return how far along a way from a place a line is crossed; infinity of parallel ones."""
     x, y = line_m[1] - line_m[0]
-    sine = way[0] * y - way[1] * x
+    sine = direction[0] * y - direction[1] * x
     if abs(sine) < 1e-9:
         return np.inf
     to_x, to_y = line_m[0] - place_m
     return float((to_x * y - to_y * x) / sine)
 
 
-def _left_of(way: FloatArray) -> FloatArray:
-    return np.array([-way[1], way[0]])
+def _left_of(direction: FloatArray) -> FloatArray:
+    return np.array([-direction[1], direction[0]])

@@ -87,8 +87,11 @@ def want_regular(walls: WallLines, sizes_m: tuple[float, ...]) -> Wanted:
         is_near &= swung_m <= walls.sigma_m
     sigma_m = np.sqrt(2) * walls.sigma_m
     nominal_m = choose_sizes(
-        *(np.where(walls.is_bent, np.nan, walls.thickness_m), sigma_m),
-        *(walls.allow(sigma_m), sizes_m, walls.lengths_m),
+        np.where(walls.is_bent, np.nan, walls.thickness_m),
+        sigma_m,
+        walls.allow(sigma_m),
+        sizes_m,
+        walls.lengths_m,
     )
     return Wanted(np.where(is_near, turn_rad, 0.0), is_near, nominal_m)
 
@@ -140,12 +143,12 @@ def _choose_side(
 
     None where the one was seen from one side, the other from the other.
     """
-    seen = np.where(walls.is_seen_from_left[[one, other]], 1.0, -1.0) * [1.0, same_way]
+    facing = np.where(walls.is_seen_from_left[[one, other]], 1.0, -1.0) * [1.0, same_way]
     thick = walls.is_thick[[one, other]]
     if not thick.any():
-        return 0.0 if seen[0] == seen[1] else None
+        return 0.0 if facing[0] == facing[1] else None
     if not thick.all():
-        return float(seen[1] if thick[0] else seen[0])
+        return float(facing[1] if thick[0] else facing[0])
     sizes_m = np.where(np.isnan(wanted.nominal_m), walls.thickness_m, wanted.nominal_m)
     if sizes_m[one] == sizes_m[other]:
         return 0.0
@@ -158,15 +161,17 @@ def _find_successors(walls: WallLines, wanted: Wanted) -> IntArray:
     """Return the rows (k, 2) of turned walls, and of that which follows next in the same line."""
     rows = np.flatnonzero(wanted.is_turned)
     angles_rad = (walls.angles_rad + wanted.turn_rad)[rows]
-    ways = np.column_stack([np.cos(angles_rad), np.sin(angles_rad)])
+    directions = np.column_stack([np.cos(angles_rad), np.sin(angles_rad)])
     middles_m = walls.lines_m[rows].mean(axis=1)
     to_m = middles_m - middles_m[:, None]
-    along_m = np.einsum("ijk,ik->ij", to_m, ways)
-    across_m = np.abs(to_m[..., 0] * -ways[:, None, 1] + to_m[..., 1] * ways[:, None, 0])
+    along_m = np.einsum("ijk,ik->ij", to_m, directions)
+    across_m = np.abs(
+        to_m[..., 0] * -directions[:, None, 1] + to_m[..., 1] * directions[:, None, 0]
+    )
     halves_m = walls.lengths_m[rows] / 2
     gap_m = np.abs(along_m) - halves_m - halves_m[:, None]
     thick_m = walls.half_m[rows]
-    is_parallel = np.abs(np.abs(ways @ ways.T) - 1) < 1e-9
+    is_parallel = np.abs(np.abs(directions @ directions.T) - 1) < 1e-9
     is_near = across_m <= thick_m + thick_m[:, None] + walls.tolerance_m
     is_next = is_parallel & is_near & (gap_m <= _THROUGH_M) & (gap_m > -2 * END_M)
     np.fill_diagonal(is_next, val=False)

@@ -91,12 +91,12 @@ def _find_outside(plan: FloorPlan) -> BoolArray:
     lines_m = centrelines_m(plan.walls)
     ways_m = lines_m[:, 1] - lines_m[:, 0]
     lengths_m = np.hypot(*ways_m.T)
-    ways = ways_m / lengths_m[:, None]
+    directions = ways_m / lengths_m[:, None]
     shapes = floorplan.line_shapes(lines_m)
     behind = find_behind(plan)
     outside = np.zeros(len(lines_m))
     for facade in np.flatnonzero(find_facades(plan)).tolist():
-        is_oblique = np.abs(ways @ behind[facade]) >= _OBLIQUE
+        is_oblique = np.abs(directions @ behind[facade]) >= _OBLIQUE
         back_m = lines_m[facade][::-1] + _OUTSIDE_M * behind[facade]
         ground = shapely.Polygon([*lines_m[facade], *back_m])
         share = shapely.length(overlays.intersect_lines(shapes, ground)) / lengths_m

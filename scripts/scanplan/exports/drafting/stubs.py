@@ -155,13 +155,13 @@ def _cut_faces(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Columns
         wall = rows.get(number, -1)
         if wall < 0 or not is_cut[wall].any():
             continue
-        way = cut_m[wall, 1] - cut_m[wall, 0]
-        length_m = float(np.hypot(*way))
-        along_m = (faces_m[face] - cut_m[wall, 0]) @ (way / length_m)
+        span_m = cut_m[wall, 1] - cut_m[wall, 0]
+        length_m = float(np.hypot(*span_m))
+        along_m = (faces_m[face] - cut_m[wall, 0]) @ (span_m / length_m)
         # at an end that is not cut a face may go on farther than its wall's line
         low_m, high_m = np.where(is_cut[wall], (0.0, length_m), (-np.inf, np.inf))
         within_m = np.clip(along_m, low_m, high_m)
         is_left[face] = abs(within_m[1] - within_m[0]) > SHORTEST_M
-        faces_m[face] += (within_m - along_m)[:, None] * (way / length_m)
+        faces_m[face] += (within_m - along_m)[:, None] * (span_m / length_m)
     cut = {**plan.faces, **line_columns(faces_m)}
     return {name: values[is_left] for name, values in cut.items()}

@@ -41,7 +41,7 @@ class WallLines:
     tolerance_m: float
 
     @cached_property
-    def ways(self) -> FloatArray:
+    def directions(self) -> FloatArray:
         """Unit vectors (n, 2) along the lines."""
         return (self.lines_m[:, 1] - self.lines_m[:, 0]) / self.lengths_m[:, None]
 
@@ -53,7 +53,7 @@ class WallLines:
     @cached_property
     def angles_rad(self) -> FloatArray:
         """Directions (n,), from -pi to pi."""
-        return np.arctan2(self.ways[:, 1], self.ways[:, 0])
+        return np.arctan2(self.directions[:, 1], self.directions[:, 0])
 
     @cached_property
     def is_thick(self) -> BoolArray:

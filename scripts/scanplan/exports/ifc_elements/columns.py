@@ -37,11 +37,11 @@ def _add_column(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instanc
     model.describe(
         column, "Pset_ColumnCommon", {"IsExternal": ("IfcBoolean", False)}, unknown=["LoadBearing"]
     )
-    seen = {
+    evidence = {
         "Points": ("IfcInteger", int(columns["n_points"][row])),
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
     }
-    model.describe(column, EVIDENCE, seen)
+    model.describe(column, EVIDENCE, evidence)
     model.measure(
         column,
         "Qto_ColumnBaseQuantities",

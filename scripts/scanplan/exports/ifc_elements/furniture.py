@@ -47,10 +47,10 @@ def _add_piece(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     bodies = [model.prism(part, 0.0, high_m) for part in shapely.get_parts(outline)]
     model.colour(bodies, "furniture")
     piece.Representation = model.shape(bodies, symbol=model.outline(outline))
-    seen = {
+    evidence = {
         "HeightMeasured": ("IfcBoolean", top_m is not None),
         "Points": ("IfcInteger", int(columns["n_points"][row])),
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
     }
-    model.describe(piece, EVIDENCE, seen)
+    model.describe(piece, EVIDENCE, evidence)
     return piece

@@ -92,8 +92,8 @@ def _add_opening(
     if host >= 0 and plan.gaps[row].intersects(plan.bodies[host]):
         # a passage is its opening; that of a door or window is known by it
         own_id = global_id if kind not in _FILLED_BY else model.guid("void", global_id)
-        gap = frame.move_here(plan.gaps[row])
-        void = _add_void(model, own_id, gap, extent_m, attributes)
+        hole = frame.move_here(plan.gaps[row])
+        void = _add_void(model, own_id, hole, extent_m, attributes)
         if kind in _FILLED_BY:
             void.Name = f"Opening of {kind} {attributes['Tag']}"
         model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
@@ -115,8 +115,14 @@ def _add_opening(
         thickness_m = plan.assumed_thickness_m
     symbol = _list_curves(model, kind, frame.length_m, thickness_m, swing)
     filling = _add_filling(
-        *(model, global_id, kind, frame.length_m, extent_m),
-        *(attributes, colour, symbol if model.is_editable else ()),
+        model,
+        global_id,
+        kind,
+        frame.length_m,
+        extent_m,
+        attributes,
+        colour,
+        symbol if model.is_editable else (),
     )
     if void is not None:
         model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
@@ -144,13 +150,13 @@ def _name_opening(storey: StoreyPlan, row: int) -> str:
 def _add_void(
     model: IfcModel,
     global_id: str,
-    gap: Polygon,
+    hole: Polygon,
     extent_m: tuple[float, float],
     attributes: dict[str, Any],
 ) -> entity_instance:
-    """Add an opening, `gap` in its own frame."""
+    """Add an opening, `hole` in its own frame."""
     void = model.known("IfcOpeningElement", global_id, PredefinedType="OPENING", **attributes)
-    void.Representation = model.shape([model.prism(gap, *extent_m)])
+    void.Representation = model.shape([model.prism(hole, *extent_m)])
     return void
 
 

@@ -82,7 +82,7 @@ def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_in
     body = plan.bodies[row]
     open_m2, open_m3 = _cut_out(plan, row)
     # doors and passages reach the floor, where windows have wall below them
-    ways = plan.gaps[(plan.hosts == row) & (plan.openings["type"] != "window")]
+    open_areas = plan.gaps[(plan.hosts == row) & (plan.openings["type"] != "window")]
     model.measure(
         wall,
         "Qto_WallBaseQuantities",
@@ -91,7 +91,9 @@ def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_in
             "Width": left_m[row] + right_m[row],
             "Height": height_m,
             "GrossFootprintArea": body.area,
-            "NetFootprintArea": overlays.subtract_areas(body, overlays.unite_areas(ways)).area,
+            "NetFootprintArea": overlays.subtract_areas(
+                body, overlays.unite_areas(open_areas)
+            ).area,
             "GrossSideArea": length_m * height_m,
             "NetSideArea": length_m * height_m - open_m2,
             "GrossVolume": body.area * height_m,

@@ -361,9 +361,9 @@ def _dimension_marks(page: Page, dimension: Dimension) -> Iterator[Mark]:
         away = place - end
         length = np.hypot(*away)
         if length > Paper.BEYOND:
-            way = away / length
+            direction = away / length
             begin = min(length - Paper.BEYOND, Paper.EXTENSION)
-            paths.append(np.stack([place - begin * way, place + Paper.BEYOND * way]))
+            paths.append(np.stack([place - begin * direction, place + Paper.BEYOND * direction]))
         oblique = rotation(45) @ along
         ticks.append(
             straight(np.stack([place - Paper.TICK * oblique, place + Paper.TICK * oblique]))

@@ -89,13 +89,13 @@ def dimension_facades(
             for shape in (outline, known, uncertain, reach)
         )
         x0, y0, x1, _ = turned.bounds
-        gap = END_M * page.mm_per_m
-        facades = _find_facades(turned, gap)
-        stops = _chain_stops(facades, openings @ turn.T, gap, (x0, x1))
-        about = _find_assumed_ends(turned, turned_known, gap)
+        reach_mm = END_M * page.mm_per_m
+        facades = _find_facades(turned, reach_mm)
+        stops = _chain_stops(facades, openings @ turn.T, reach_mm, (x0, x1))
+        about = _find_assumed_ends(turned, turned_known, reach_mm)
         upright = _find_upright_edges(turned)
-        uncertain_strip = overlays.buffer_shapes(turned_uncertain, gap)
-        about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, gap)}
+        uncertain_strip = overlays.buffer_shapes(turned_uncertain, reach_mm)
+        about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, reach_mm)}
         level = turned_reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
@@ -105,10 +105,12 @@ def dimension_facades(
             yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
 
 
-def _find_assumed_ends(outline: BaseGeometry, known: BaseGeometry, gap: float) -> frozenset[float]:
+def _find_assumed_ends(
+    outline: BaseGeometry, known: BaseGeometry, reach_mm: float
+) -> frozenset[float]:
     """Return those of a plan's ends (x, on turned paper) that lie beyond all that is known."""
     ends = zip(outline.bounds[::2], known.bounds[::2], strict=True)
-    return frozenset(x for x, known_x in ends if not abs(x - known_x) < gap / 10)
+    return frozenset(x for x, known_x in ends if not abs(x - known_x) < reach_mm / 10)
 
 
 def _find_upright_edges(outline: BaseGeometry) -> Array:
@@ -122,20 +124,20 @@ def _find_upright_edges(outline: BaseGeometry) -> Array:
 
 
 def _is_beside(
-    stop: tuple[float, float], upright: Array, uncertain_strip: BaseGeometry, gap: float
+    stop: tuple[float, float], upright: Array, uncertain_strip: BaseGeometry, reach_mm: float
 ) -> bool:
     """Return whether most of the side that a stop (x, y) is an end of is uncertain."""
     x, y = stop
     west, _, east, _ = shapely.bounds(upright).T
-    at_x = overlays.unite_lines(upright[(west - gap <= x) & (x <= east + gap)])
-    sides = shapely.get_parts(overlays.buffer_shapes(at_x, gap))
+    at_x = overlays.unite_lines(upright[(west - reach_mm <= x) & (x <= east + reach_mm)])
+    sides = shapely.get_parts(overlays.buffer_shapes(at_x, reach_mm))
     side = overlays.intersect_lines(
-        at_x, overlays.unite_areas(sides[shapely.dwithin(sides, shapely.Point(x, y), gap)])
+        at_x, overlays.unite_areas(sides[shapely.dwithin(sides, shapely.Point(x, y), reach_mm)])
     )
     return bool(overlays.intersect_lines(side, uncertain_strip).length > side.length / 2)
 
 
-def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
+def _find_facades(outline: BaseGeometry, reach_mm: float) -> list[_Facade]:
     """Return the stretches of an outline that are seen from below, from the left.
 
     Stretches below five times what ends err by are stubs and jambs, and no facades.
@@ -147,21 +149,21 @@ def _find_facades(outline: BaseGeometry, gap: float) -> list[_Facade]:
         edges += [_Facade(*a, *b) for a, b in itertools.pairwise(ring.tolist()) if b[0] > a[0]]
     level = sorted((edge for edge in edges if edge.is_level), key=lambda e: e.y)
     askew = [edge for edge in edges if not edge.is_level]
-    seen: list[_Facade] = []
+    visible: list[_Facade] = []
     for row, edge in enumerate(level):
         # what runs askew is no facade, and hides what is behind it all the same
         hidden = [*((e.x0, e.x1) for e in level[:row]), *(e.find_below(edge.y) for e in askew)]
         free = _cut_intervals((edge.x0, edge.x1), hidden)
-        seen += [edge.cut(x0, x1) for x0, x1 in free if x1 - x0 > 0]
+        visible += [edge.cut(x0, x1) for x0, x1 in free if x1 - x0 > 0]
     joined: list[_Facade] = []
-    for facade in sorted(seen, key=lambda e: e.x0):
+    for facade in sorted(visible, key=lambda e: e.x0):
         last = joined[-1] if joined else None
         # an oblique one goes on where it ended, however far that is from its middle
-        if last and facade.x0 - last.x1 <= gap and abs(facade.y0 - last.y1) <= gap:
+        if last and facade.x0 - last.x1 <= reach_mm and abs(facade.y0 - last.y1) <= reach_mm:
             joined[-1] = _Facade(last.x0, last.y0, facade.x1, facade.y1)
         else:
             joined.append(facade)
-    return [facade for facade in joined if facade.x1 - facade.x0 > 5 * gap]
+    return [facade for facade in joined if facade.x1 - facade.x0 > 5 * reach_mm]
 
 
 def _cut_intervals(
@@ -178,7 +180,7 @@ def _cut_intervals(
 
 
 def _chain_stops(
-    facades: list[_Facade], openings: FloatArray, gap: float, ends: tuple[float, float]
+    facades: list[_Facade], openings: FloatArray, reach_mm: float, ends: tuple[float, float]
 ) -> list[tuple[float, float]]:
     """Return the stops (x, y) of a chain: its ends, openings in facades, and the facades' ends.
 
@@ -193,9 +195,9 @@ def _chain_stops(
         y = (y0 + y1) / 2
         for facade in facades if is_along else []:
             # an opening lies in the middle of its wall, whose face is before it
-            is_in_it = facade.x0 - gap <= low and high <= facade.x1 + gap
+            is_in_it = facade.x0 - reach_mm <= low and high <= facade.x1 + reach_mm
             before = facade.cut(low, high)
-            if is_in_it and -gap <= y - before.y <= 4 * gap:
+            if is_in_it and -reach_mm <= y - before.y <= 4 * reach_mm:
                 found += [(low, before.y0), (high, before.y1)]
     for facade in facades:
         found += [(facade.x0, facade.y0), (facade.x1, facade.y1)]
@@ -258,8 +260,8 @@ def read_along(line: FloatArray) -> tuple[FloatArray, float]:
 
     It is read from below or from the right (ISO 129-1).
     """
-    way = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
-    along = way if way @ _READ_ALONG > 0 else -way
+    direction = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    along = direction if direction @ _READ_ALONG > 0 else -direction
     return along, float(np.degrees(np.arctan2(along[1], along[0])))
 
 
@@ -300,15 +302,17 @@ def dimension_room(
             shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
             for shape in (room, uncertain)
         )
-        gap = END_M * page.mm_per_m
+        reach_mm = END_M * page.mm_per_m
         _, y0, _, y1 = turned.bounds
         candidates: list[Candidate] = []
         for share in (0.2, 0.8, 0.35, 0.65, 0.5, 0.12, 0.88, 0.28, 0.72, 0.42, 0.58):
-            chord = _find_chord(turned, y0 + share * (y1 - y0), gap)
+            chord = _find_chord(turned, y0 + share * (y1 - y0), reach_mm)
             if chord is None:
                 continue
             length_mm = float(chord[1, 0] - chord[0, 0])
-            is_about = bool(shapely.dwithin(shapely.points(chord), turned_uncertain, gap).any())
+            is_about = bool(
+                shapely.dwithin(shapely.points(chord), turned_uncertain, reach_mm).any()
+            )
             words = _state_length(page, length_mm, is_about=is_about)
             if length_mm < measure_width_mm(words, Letters.SMALL) + Paper.LEAST:
                 continue

@@ -50,8 +50,8 @@ def draw_swing(door: Symbol, leaves: Leaves) -> Symbol:
     middles_m = leaves.lines_m[leaves.is_sliding].mean(axis=1)
     if (np.hypot(*(middles_m - door.ends_m.mean(axis=0)).T) <= HINGE_M).any():
         return replace(door, kind="swing", block="SLIDING")
-    way = (door.ends_m[1] - door.ends_m[0]) / door.width_m
-    left = np.array([-way[1], way[0]])
+    direction = (door.ends_m[1] - door.ends_m[0]) / door.width_m
+    left = np.array([-direction[1], direction[0]])
     is_double = door.width_m > WIDEST_LEAF_M
     leaf_m = door.width_m / (2 if is_double else 1)
     found = [

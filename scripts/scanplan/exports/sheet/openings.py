@@ -64,9 +64,11 @@ def draw_things(plan: FloorPlan, symbols: Sequence[Symbol]) -> Iterator[Mark]:
     paths = [symbol_paths(symbol) for symbol in symbols if symbol.is_hinged]
     pairs = [pair for of in paths for pair in zip(of[::2], of[1::2], strict=True)]
     leaves = [shapely.LineString(leaf[:, :2]) for leaf, _ in pairs]
-    ways = [shapely.Polygon([leaf[0, :2], *flatten(arc)]) for leaf, arc in pairs]
+    swings = [shapely.Polygon([leaf[0, :2], *flatten(arc)]) for leaf, arc in pairs]
     shown = {
-        schemas.LEAF: overlays.unite_areas(overlays.buffer_shapes(np.array(ways, object), HINGE_M)),
+        schemas.LEAF: overlays.unite_areas(
+            overlays.buffer_shapes(np.array(swings, object), HINGE_M)
+        ),
         "furniture": overlays.unite_areas(
             overlays.buffer_shapes(np.array(leaves, object), _ON_LEAF_M)
         ),

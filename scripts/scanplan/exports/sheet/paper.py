@@ -221,18 +221,19 @@ def _fit_sheet(
     for scale in scales:
         found = [
             filled
-            for way in _list_ways(replace(page, scale=scale))
+            for layout in _list_layouts(replace(page, scale=scale))
             # three rows under a head are a table, fewer look forgotten
             for least in (3, 1)
-            if (filled := _fill_page(way, blocks, least)) is not None and _holds(filled, extent_m)
+            if (filled := _fill_page(layout, blocks, least)) is not None
+            and _holds(filled, extent_m)
         ]
         if found:
-            good = [way for way in found if _fills(way, extent_m) >= _ENOUGH]
+            good = [layout for layout in found if _fills(layout, extent_m) >= _ENOUGH]
             return (good or found)[0]
     return None
 
 
-def _list_ways(page: Page) -> Iterator[Page]:
+def _list_layouts(page: Page) -> Iterator[Page]:
     """Yield a sheet lying and upright, with tables below the plan alone, then beside it, too."""
     long, short = SIZES_MM[page.name]
     for is_beside in (False, True):

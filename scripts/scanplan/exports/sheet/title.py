@@ -345,13 +345,15 @@ def _draw_axes(page: Page, origin: FloatArray, north_deg: float | None) -> Itera
     if north_deg is not None:
         axes = {"N": rotation(north_deg) @ east}
     for name, along in axes.items():
-        way = rotation(page.turn_deg) @ along
-        side = np.array([-way[1], way[0]])
-        tip = origin + reach * way
+        direction = rotation(page.turn_deg) @ along
+        side = np.array([-direction[1], direction[0]])
+        tip = origin + reach * direction
         yield Mark("title", [straight(np.stack([origin, tip]))], element=f"axis-{name}")
-        head = np.stack([tip, tip - 1.6 * way + 0.5 * side, tip - 1.6 * way - 0.5 * side, tip])
+        head = np.stack(
+            [tip, tip - 1.6 * direction + 0.5 * side, tip - 1.6 * direction - 0.5 * side, tip]
+        )
         yield Mark("scale-bar", [straight(head)], True, f"axis-{name}-head")
-        place = tip + 1.6 * way
+        place = tip + 1.6 * direction
         yield Word("title", name, place, Letters.SMALL)
     if north_deg is not None:
         return

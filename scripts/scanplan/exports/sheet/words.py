@@ -102,10 +102,10 @@ def lead_out(word: Word, cost: float) -> Iterator[Candidate]:
     """Yield places around a word's own, with a line to it."""
     for away in (5.0, 8.0, 12.0, 17.0):
         for angle in np.arange(0, 2 * np.pi, np.pi / 6):
-            way = np.array([np.cos(angle), np.sin(angle)])
-            place = word.place + away * way
-            side = 0.0 if way[0] > 0.3 else 1.0 if way[0] < -0.3 else 0.5
-            end = place - (word.size_mm if side == 0.5 else 0.6) * way
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            place = word.place + away * direction
+            side = 0.0 if direction[0] > 0.3 else 1.0 if direction[0] < -0.3 else 0.5
+            end = place - (word.size_mm if side == 0.5 else 0.6) * direction
             leader = np.array([word.place, end])
             moved = Word(word.kind, word.text, place, word.size_mm, 0.0, side, word.element, leader)
             yield Candidate([moved], cost + away / 17, (leader,))

@@ -35,8 +35,8 @@ def add_clutter(
         Share of the doors without a leaf in which one stands open; the others have none.
     """
     generator = open_stream(seed, RandomStream.CLUTTER)
-    way = overlays.buffer_shapes(LineString(site.waypoints_m), 1.2 * ROVER_RADIUS_M)
-    taken = overlays.unite_areas([way, site.obstacles_m])
+    track = overlays.buffer_shapes(LineString(site.waypoints_m), 1.2 * ROVER_RADIUS_M)
+    taken = overlays.unite_areas([track, site.obstacles_m])
     shapely.prepare(taken)
     openings = [feature for feature in site.truth if feature[1]["kind"] == "opening"]
     hung = {values["opening"] for _, values in site.truth if values["kind"] == "leaf"}
@@ -45,7 +45,7 @@ def add_clutter(
         for row, (line, values) in enumerate(openings)
         if values["type"] == "door" and row not in hung
     ]
-    leaves = list(_draw_leaves(doors, doors_ajar, way, generator))
+    leaves = list(_draw_leaves(doors, doors_ajar, track, generator))
     legs = [
         leg
         for chair in _draw_chairs(site.floor_m, taken, leaves, chairs, generator)
@@ -71,7 +71,7 @@ def _sides(polygon: Polygon) -> FloatArray:
 
 
 def _draw_leaves(
-    doors: Sequence[BaseGeometry], share: float, way: BaseGeometry, generator: np.random.Generator
+    doors: Sequence[BaseGeometry], share: float, track: BaseGeometry, generator: np.random.Generator
 ) -> Iterator[Polygon]:
     """Yield leaves that hang on either jamb and open to either side, where the way lets them."""
     for door in doors:
@@ -84,7 +84,7 @@ def _draw_leaves(
         rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         leaf = LineString([pivot, pivot + rotation @ (other - pivot)])
         body = overlays.buffer_shapes(leaf, _CHAIR_M[1] / 2, cap_style="flat")
-        if is_ajar and not body.intersects(way):
+        if is_ajar and not body.intersects(track):
             yield body
 
 

@@ -86,10 +86,10 @@ def _read_floor(parts: Sequence[DrawnPart], height_m: float, source: FilePath) -
     for part in parts:
         of_kind[part.kind].append(part)
     walls = tuple(thing_reading.read_wall(part, height_m) for part in of_kind["wall"])
-    ways = of_kind["waypoints"]
-    if not walls or len(ways) > 1:
+    waypoints = of_kind["waypoints"]
+    if not walls or len(waypoints) > 1:
         raise StageError(
-            f"{source}: {len(walls)} walls and {len(ways)} features of kind waypoints;"
+            f"{source}: {len(walls)} walls and {len(waypoints)} features of kind waypoints;"
             " draw at least one wall and at most one way for the rover"
         )
     read = thing_reading
@@ -102,7 +102,7 @@ def _read_floor(parts: Sequence[DrawnPart], height_m: float, source: FilePath) -
         openings=tuple(drawing_openings.read_opening(o, walls) for o in of_kind["opening"]),
         furniture=tuple(read.read_furniture(part, height_m) for part in of_kind["furniture"]),
         room_names=tuple(map(read.read_room_name, of_kind["room"])),
-        waypoints_m=shapely.get_coordinates(ways[0].geometry_m) if ways else None,
+        waypoints_m=shapely.get_coordinates(waypoints[0].geometry_m) if waypoints else None,
         columns=tuple(read.read_column(part, height_m) for part in of_kind["column"]),
         ceilings=tuple(read.read_ceiling(part, height_m) for part in ceilings),
         voids=voids,

@@ -40,7 +40,7 @@ def hang_leaves(
     seed: int,
     slice_height_m: float,
     planar: bool = False,
-    way: BaseGeometry | None = None,
+    track: BaseGeometry | None = None,
 ) -> building.Building:
     """Return a building with leaves in some of its doors that have none.
 
@@ -54,7 +54,7 @@ def hang_leaves(
         Of its doorways that get a leaf.
     slice_height_m, planar
         See `building.load_building`.
-    way : shapely geometry or None
+    track : shapely geometry or None
         Ground of the rover's way where it is given, see `draw_way`; one that is yet to be planned
         goes around them.
 
@@ -67,8 +67,8 @@ def hang_leaves(
         note = "simulate.site.leaves: the building tells of no door without a leaf; none is hung"
         return replace(site, notes=(*site.notes, note))
     taken = site.obstacles_m
-    if way is not None:
-        taken = overlays.unite_each(taken, way)
+    if track is not None:
+        taken = overlays.unite_each(taken, track)
     hung: list[tuple[int, list[LeafBody]]] = []
     for row, opening in site.doorways:
         generator = open_stream(seed, RandomStream.LEAVES, row)

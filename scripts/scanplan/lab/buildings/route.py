@@ -24,7 +24,7 @@ _MAX_CELLS = 20e6  # rasters of 160 MB each
 _YIELD_M = 0.1  # less space than its cells have that a straightened way may keep: corners for space
 _SPACING_M = 6.0  # by cost, from a stop to the middle of what is visited: hallways get several
 
-Ways = list[tuple[FloatArray, IntArray]]
+Searches = list[tuple[FloatArray, IntArray]]
 """For every stop the costs of going there from every cell, and the cell before each."""
 
 
@@ -112,9 +112,9 @@ def plan_route(
     part = _part_of(free, start_xy_m, clearance_m, asked, source)
     grid = roadmap.connected_grid(_grid_over(part, clearance_m, source), start_xy_m)
     first = _first_cell(grid, start_m, seed)
-    stops, is_reached, ways = _choose_stops(grid, asked, first)
+    stops, is_reached, searches = _choose_stops(grid, asked, first)
     _check_stops(stops, is_reached, clearance_m, source)
-    legs = _join_stops(stops, ways, fixed_start=first is not None, closed=kind == "hallways")
+    legs = _join_stops(stops, searches, fixed_start=first is not None, closed=kind == "hallways")
     corners_m = [_straighten(grid, leg, part, ground.obstacles_m) for leg in legs]
     named = [(_room_label(*room), ok) for room, ok in zip(asked, is_reached, strict=True)]
     return Route(
@@ -248,7 +248,7 @@ def _grid_over(part: Polygon, clearance_m: float, source: FilePath) -> RoadmapGr
 
 def _choose_stops(
     grid: RoadmapGrid, rooms: Rooms, first: int | None
-) -> tuple[list[int], list[bool], Ways]:
+) -> tuple[list[int], list[bool], Searches]:
     """Return places in the rooms, which rooms have any, and the ways to every stop.
 
     The middle of a room is everywhere near a stop.
@@ -256,16 +256,16 @@ def _choose_stops(
     cells = [roadmap.room_cells(grid, room) for _, room in rooms]
     stops = [] if first is None else [first]
     stops += [c[0] for c in cells if len(c)]
-    ways = [roadmap.cheapest_ways(grid, stop) for stop in stops]
+    searches = [roadmap.cheapest_ways(grid, stop) for stop in stops]
     # ASSUME what is seen from the middle of a room is the room: cells along its walls need no visit
     middle = np.concatenate([np.empty(0, int), *(c[grid.middle[c]] for c in cells)])
-    far = np.min([cost[middle] for cost, _ in ways], axis=0) if ways else np.empty(0)
+    far = np.min([cost[middle] for cost, _ in searches], axis=0) if searches else np.empty(0)
     # a drive needs two places; then always the one farthest from those chosen
     while len(middle) > 1 and (len(stops) < 2 or far.max() > _SPACING_M):
         stops.append(int(middle[far.argmax()]))
-        ways.append(roadmap.cheapest_ways(grid, stops[-1]))
-        far = np.minimum(far, ways[-1][0][middle])
-    return stops, [len(c) > 0 for c in cells], ways
+        searches.append(roadmap.cheapest_ways(grid, stops[-1]))
+        far = np.minimum(far, searches[-1][0][middle])
+    return stops, [len(c) > 0 for c in cells], searches
 
 
 def _check_stops(
@@ -284,14 +284,14 @@ def _check_stops(
 
 
 def _join_stops(
-    stops: list[int], ways: Ways, *, fixed_start: bool, closed: bool
+    stops: list[int], searches: Searches, *, fixed_start: bool, closed: bool
 ) -> list[list[int]]:
     """Return the ways from stop to stop in the order of a short tour, as cells."""
-    cost = np.stack([costs[stops] for costs, _ in ways])
+    cost = np.stack([costs[stops] for costs, _ in searches])
     order = tour.shortest_tour((cost + cost.T) / 2, closed=closed, first=0 if fixed_start else None)
     legs = []
     for a, b in pairwise([*order, order[0]] if closed else order):
-        _, cell_before = ways[a]
+        _, cell_before = searches[a]
         legs.append(roadmap.trace_way(cell_before, stops[a], stops[b]))
     return legs
 

@@ -172,9 +172,14 @@ def mark_visited(features: Sequence[Feature], waypoints_m: ArrayLike) -> list[Fe
 
     Nothing is changed.
     """
-    way = LineString(np.asarray(waypoints_m))
+    track = LineString(np.asarray(waypoints_m))
     return [
-        (g, {**values, "visited": bool(g.intersects(way))} if values["kind"] == "room" else values)
+        (
+            g,
+            {**values, "visited": bool(g.intersects(track))}
+            if values["kind"] == "room"
+            else values,
+        )
         for g, values in features
     ]
 

@@ -182,9 +182,9 @@ def _in_disc(
 
 def _unit(lines_m: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the lengths (n,) and the unit directions (n, 2) of lines."""
-    way = lines_m[:, 1] - lines_m[:, 0]
-    length_m = np.hypot(*way.T)
-    return length_m, way / np.where(length_m > 0, length_m, 1)[:, None]
+    direction = lines_m[:, 1] - lines_m[:, 0]
+    length_m = np.hypot(*direction.T)
+    return length_m, direction / np.where(length_m > 0, length_m, 1)[:, None]
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -67,12 +67,12 @@ def _is_visible(line_m: FloatArray, cells: FaceCells, visible: BoolArray) -> boo
     That is the wall below it and half a metre beside it. Where the opening reaches down to the
     height of the sensor there is no face below it, only beside it.
     """
-    way = unit_directions(line_m[None])[0]
-    across = np.array([-way[1], way[0]])
+    direction = unit_directions(line_m[None])[0]
+    across = np.array([-direction[1], direction[0]])
     offset_m = cells.middle_m - line_m.mean(axis=0)
     reach_m = line_lengths_m(line_m[None])[0] / 2 + _BESIDE_M
-    along = (unit_directions(cells.faces_m) @ way)[cells.face]
-    is_near = (np.abs(offset_m @ way) <= reach_m) & (np.abs(offset_m @ across) <= WALL_M)
+    along = (unit_directions(cells.faces_m) @ direction)[cells.face]
+    is_near = (np.abs(offset_m @ direction) <= reach_m) & (np.abs(offset_m @ across) <= WALL_M)
     beside = is_near & (np.abs(along) >= PARALLEL)
     for side in (beside & (along > 0), beside & (along < 0)):
         visible_m = cells.length_m[side & visible].sum()

@@ -205,9 +205,9 @@ def measure_walls(
 def _match_walls(drawn_m: FloatArray, true_m: FloatArray) -> IntArray:
     """Return the true wall (n,) that each drawn one runs beside for longest; -1 without any."""
     near = length_metrics.find_near_intervals(drawn_m, true_m, opening_metrics.WALL_M)
-    way = opening_metrics.unit_directions(drawn_m)[near.line]
+    direction = opening_metrics.unit_directions(drawn_m)[near.line]
     true_way = opening_metrics.unit_directions(true_m)[near.other]
-    alike = np.abs(np.einsum("ij,ij->i", way, true_way)) >= opening_metrics.PARALLEL
+    alike = np.abs(np.einsum("ij,ij->i", direction, true_way)) >= opening_metrics.PARALLEL
     line, other = near.line[alike], near.other[alike]
     # the longest last, and of equals the first
     order = np.lexsort((-other, (near.high_m - near.low_m)[alike], line))

@@ -32,9 +32,9 @@ def place_standing(
     tuple of people.Person
         Empty where there is no room.
     """
-    way = LineString(drive.xy_m)
+    track = LineString(drive.xy_m)
     room = overlays.buffer_shapes(free, -people.CLEARANCE_M, quad_segs=8)
-    room = overlays.subtract_areas(room, overlays.buffer_shapes(way, _FROM_WAY_M, quad_segs=8))
+    room = overlays.subtract_areas(room, overlays.buffer_shapes(track, _FROM_WAY_M, quad_segs=8))
     if room.is_empty:
         return ()
     shapely.prepare(room)

@@ -55,7 +55,7 @@ def prepare_site(
         With a way.
     """
     mount, site = settings["mount"], settings["site"]
-    way = {key: site[key] for key in _ROUTE}
+    route = {key: site[key] for key in _ROUTE}
     things = {key: site[key] for key in _CLUTTER}
     others = (*_ROUTE, *_CLUTTER, "leaves")
     reading = {key: value for key, value in site.items() if key not in others}
@@ -67,21 +67,21 @@ def prepare_site(
         reading=building.FileReading(**reading),
     )
     if site.get("leaves", 0.0) > 0:
-        given_m = found.waypoints_m if way["waypoints_m"] is None else way["waypoints_m"]
+        given_m = found.waypoints_m if route["waypoints_m"] is None else route["waypoints_m"]
         found = random_leaves.hang_leaves(
             found,
             share=site["leaves"],
             seed=seed,
             slice_height_m=mount["height_m"],
             planar=planar,
-            way=None
-            if given_m is None or way["route"] != "given"
+            track=None
+            if given_m is None or route["route"] != "given"
             else random_leaves.draw_way(given_m, abs(mount["forward_m"])),
         )
     driven = building_route.plan_building_route(
         found,
         source,
-        building_route.WaySettings(**way),
+        building_route.WaySettings(**route),
         reach_m=abs(mount["forward_m"]),
         seed=seed,
     )
@@ -115,17 +115,17 @@ def prepare_survey(
     beams = {key: value for key, value in settings["sensor"].items() if key not in _TURNING}
     lidar = sensor_models.make_sensor(turning=sensors.Turning(**turning), **beams)
     base_from_sensor = rover.mount_sensor(**settings["mount"])
-    way = plan_motion(site.waypoints_m, base_from_sensor, settings["drive"], seed=seed)
+    drive = plan_motion(site.waypoints_m, base_from_sensor, settings["drive"], seed=seed)
     free = overlays.subtract_areas(site.floor_m, site.obstacles_m)
     stated = sensor_errors.StatedErrors(**settings["errors"])
     return sweeps.SimulatedSurvey(
         mesh=site.mesh,
         sensor=lidar,
         errors=sensor_errors.draw_sensor_errors(lidar, stated, seed=seed),
-        drive=way,
+        drive=drive,
         base_from_sensor=base_from_sensor,
-        people=invite_people(free, way, settings["people"], seed=seed),
-        t_ns=rover.scan_stamps(way, settings["sensor"]["rate_hz"]),
+        people=invite_people(free, drive, settings["people"], seed=seed),
+        t_ns=rover.scan_stamps(drive, settings["sensor"]["rate_hz"]),
         seed=seed,
     )
 
@@ -139,12 +139,12 @@ def plan_motion(
     """
     speed = {key: drive[key] for key in ("speed_m_s", "turn_rate_deg_s")}
     hand = {key: drive[key] for key in ("sway_m", "sway_deg", "sway_hz")}
-    way = rover.plan_drive(waypoints_m, **speed)
-    return rover.carry_in_hand(way, base_from_sensor, **hand, seed=seed)
+    planned = rover.plan_drive(waypoints_m, **speed)
+    return rover.carry_in_hand(planned, base_from_sensor, **hand, seed=seed)
 
 
 def invite_people(
-    free: BaseGeometry, way: rover.Drive, wanted: Settings, *, seed: int
+    free: BaseGeometry, drive: rover.Drive, wanted: Settings, *, seed: int
 ) -> tuple[people.Person, ...]:
     """Return so many people who wander, who stand about and who follow the sensor.
 
@@ -154,11 +154,11 @@ def invite_people(
         `count` and `speed_m_s` of `people.simulate_walkers`, `standing` of
         `companions.place_standing`, `followers` of `companions.follow_sensor`.
     """
-    pace = {"speed_m_s": wanted["speed_m_s"], "until_s": way.t_s[-1]}
+    pace = {"speed_m_s": wanted["speed_m_s"], "until_s": drive.t_s[-1]}
     return (
         *people.simulate_walkers(free, wanted["count"], **pace, seed=seed),
-        *companions.place_standing(free, way, wanted["standing"], seed=seed),
-        *companions.follow_sensor(free, way, wanted["followers"]),
+        *companions.place_standing(free, drive, wanted["standing"], seed=seed),
+        *companions.follow_sensor(free, drive, wanted["followers"]),
     )
 
 

@@ -139,9 +139,11 @@ def add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int
 def cut_faces(rows: PlanRows, wall: Row, ends_m: FloatArray) -> None:
     """Cut an opening out of the faces of its wall; a second part gets a number of its own."""
     half_m = np.array([half_m_of(wall) + REACH_M])
-    (gap,) = floorplan.buffer_lines(ends_m[None], half_m)
+    (ground,) = floorplan.buffer_lines(ends_m[None], half_m)
     for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
-        parts = shapely.get_parts(overlays.subtract_lines(shapely.LineString(ends_of(face)), gap))
+        parts = shapely.get_parts(
+            overlays.subtract_lines(shapely.LineString(ends_of(face)), ground)
+        )
         parts = parts[shapely.length(parts) > 0]
         if len(parts) == 0:
             rows.faces.remove(face)

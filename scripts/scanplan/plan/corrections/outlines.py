@@ -203,8 +203,8 @@ def _draw_walls(rows: PlanRows) -> BaseGeometry:
     # a line that parts a room is open, and leaves the walls beside it
     in_walls = [opening for opening in rows.openings if opening["wall"] >= 0]
     cuts = [shapely.LineString(added.ends_of(opening)) for opening in in_walls]
-    gaps = overlays.buffer_shapes(np.array(cuts, object), _THICKEST_M, cap_style="flat")
-    return overlays.subtract_areas(overlays.unite_areas(bodies), overlays.unite_areas(gaps))
+    cut_out = overlays.buffer_shapes(np.array(cuts, object), _THICKEST_M, cap_style="flat")
+    return overlays.subtract_areas(overlays.unite_areas(bodies), overlays.unite_areas(cut_out))
 
 
 def _is_inside(opening: Row, room: int) -> bool:

@@ -46,14 +46,14 @@ def cut_faces(
         corners_m = arc_m[number : number + 2]
         line = _draw_line(corners_m if not faces_centre else corners_m[::-1])
         inside = np.flatnonzero((at_rad >= begin) & (at_rad <= end))
-        seen = observe_points(
-            line, xy_m[inside], z_m[inside], scan[inside], planar=faces[0].seen.planar
+        observation = observe_points(
+            line, xy_m[inside], z_m[inside], scan[inside], planar=faces[0].observation.planar
         )
         for span in _covered(spans, begin, end):
             share = (span - begin) / (end - begin)
             ends_m = corners_m[0] + share[:, None] * (corners_m[1] - corners_m[0])
             low_m, high_m = np.sort(line.along_m(ends_m)).tolist()
-            face = FaceInterval(seen, low_m, high_m)
+            face = FaceInterval(observation, low_m, high_m)
             if face.n_points:
                 cut.append(face)
     return cut
@@ -90,12 +90,12 @@ def _gather_points(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return places (n, 2), heights (n,) and scans (n,) of the points of faces, each once."""
     xy_m = [
-        face.line.at(face.seen.occupied_m[face.points])
-        + face.seen.occupied_off_m[face.points, None] * face.line.normal
+        face.line.at(face.observation.occupied_m[face.points])
+        + face.observation.occupied_off_m[face.points, None] * face.line.normal
         for face in faces
     ]
-    z_m = [face.seen.occupied_z_m[face.points] for face in faces]
-    scan = np.concatenate([face.seen.occupied_scan[face.points] for face in faces])
+    z_m = [face.observation.occupied_z_m[face.points] for face in faces]
+    scan = np.concatenate([face.observation.occupied_scan[face.points] for face in faces])
     places = np.column_stack([np.concatenate(xy_m), np.concatenate(z_m)])
     # of two lines a point has two roundings
     same = np.column_stack([np.rint(places / arcs.SAGITTA_M), scan])
@@ -105,9 +105,9 @@ def _gather_points(
 
 def _draw_line(ends_m: FloatArray) -> Line:
     """Return the line through two places, its normal on the right of the way between them."""
-    way = ends_m[1] - ends_m[0]
-    way /= np.hypot(*way)
-    return Line(ends_m.mean(axis=0), np.array([way[1], -way[0]]))
+    direction = ends_m[1] - ends_m[0]
+    direction /= np.hypot(*direction)
+    return Line(ends_m.mean(axis=0), np.array([direction[1], -direction[0]]))
 
 
 def observe_points(

@@ -124,12 +124,14 @@ class WallShapes:
         lines_m = np.concatenate([self.lines_m, self.lines_m[bent]])
         for row, stub in self._second_stubs():
             from_centre_m = self.lines_m[row] - self.centres_m[row]
-            ways = self._turns(row) * np.column_stack([-from_centre_m[:, 1], from_centre_m[:, 0]])
-            ways /= np.hypot(*ways.T)[:, None]
+            directions = self._turns(row) * np.column_stack(
+                [-from_centre_m[:, 1], from_centre_m[:, 0]]
+            )
+            directions /= np.hypot(*directions.T)[:, None]
             length_m = arcs.arc_length_m(self.lines_m[row], self.centres_m[row])
             reach_m = min(whole_m, length_m / 2)
-            lines_m[row, 1] = lines_m[row, 0] + reach_m * ways[0]
-            lines_m[stub, 0] = lines_m[stub, 1] - reach_m * ways[1]
+            lines_m[row, 1] = lines_m[row, 0] + reach_m * directions[0]
+            lines_m[stub, 0] = lines_m[stub, 1] - reach_m * directions[1]
         left_m, right_m = (
             np.concatenate([side_m, side_m[bent]]) for side_m in (self.left_m, self.right_m)
         )
@@ -139,19 +141,19 @@ class WallShapes:
         """Return the ground between two arcs, of the corners of its ends as in a straight wall."""
         left, right = (self.trace(row, off) for off in (self.left_m[row], -self.right_m[row]))
         ends_m = self.lines_m[row]
-        ways = np.array([left[1] - left[0], left[-2] - left[-1]])
+        directions = np.array([left[1] - left[0], left[-2] - left[-1]])
         kept = []
         for side in (left, right):
             is_kept = np.full(len(side), True)
             is_kept[[0, -1]] = False
             middle = len(side) // 2
             # what a mitre cuts off
-            for half, corners, end_m, way in (
-                *((slice(0, middle), first, ends_m[0], ways[0]),),
-                *((slice(middle, None), second, ends_m[1], ways[1]),),
+            for half, corners, end_m, direction in (
+                *((slice(0, middle), first, ends_m[0], directions[0]),),
+                *((slice(middle, None), second, ends_m[1], directions[1]),),
             ):
-                inward_m = max(float((corner - end_m) @ way) for corner in corners)
-                is_kept[half] &= (side[half] - end_m) @ way > inward_m
+                inward_m = max(float((corner - end_m) @ direction) for corner in corners)
+                is_kept[half] &= (side[half] - end_m) @ direction > inward_m
             kept.append(side[is_kept])
         ring = Polygon([*first, *kept[0], *second, *kept[1][::-1]])
         return shapely.orient_polygons(ring if ring.is_valid else Polygon([*left, *right[::-1]]))

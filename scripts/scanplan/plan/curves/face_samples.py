@@ -37,16 +37,16 @@ class FaceSamples:
 
 def sample_face(face: FaceInterval) -> FaceSamples | None:
     """Return a face's samples; None of one that is too short, or that too few points show."""
-    seen, points = face.seen, face.points
+    observation, points = face.observation, face.points
     if face.n_points < ENOUGH_RAYS:
         return None
-    column = np.floor((seen.occupied_m[points] - face.low_m) / CELL_M).astype(np.int64)
-    scan = seen.occupied_scan[points]
+    column = np.floor((observation.occupied_m[points] - face.low_m) / CELL_M).astype(np.int64)
+    scan = observation.occupied_scan[points]
     # as one number: pairs are sorted ten times as slowly
     n_scans_most = int(scan.max(initial=0)) + 1
     pairs = column * n_scans_most + scan
     of_pair, pair, count = np.unique(pairs, return_inverse=True, return_counts=True)
-    places = np.stack([seen.occupied_m[points], seen.occupied_off_m[points]])
+    places = np.stack([observation.occupied_m[points], observation.occupied_off_m[points]])
     along_m, off_m = (np.bincount(pair, of) / count for of in places)
     of_column = of_pair // n_scans_most
     _, row, n_scans = np.unique(of_column, return_inverse=True, return_counts=True)
@@ -56,7 +56,7 @@ def sample_face(face: FaceInterval) -> FaceSamples | None:
     between_scans = np.sum((off_m - y_m[row]) ** 2) / max(len(row) - len(n_scans), 1)
     variance = np.maximum(between_scans / n_scans, _LEAST_VARIANCE_M2)
     variance *= max(_misfit(x_m, y_m, variance, 2) / (len(x_m) - 3), 1.0)
-    xy_m = seen.line.at(x_m) + y_m[:, None] * seen.line.normal
+    xy_m = observation.line.at(x_m) + y_m[:, None] * observation.line.normal
     return FaceSamples(face, xy_m, variance, _misfit(x_m, y_m, variance, 1))
 
 

@@ -62,14 +62,14 @@ class Ring:
         begin, end = self._turned(self._ends_m, 0.0)
         order = np.argsort(begin, kind="stable")
         reach = np.maximum.accumulate(end[order])
-        gap = np.append(begin[order][1:], begin[order][0] + 2 * np.pi) - reach
-        return float(begin[order][(int(gap.argmax()) + 1) % len(order)])
+        bare_rad = np.append(begin[order][1:], begin[order][0] + 2 * np.pi) - reach
+        return float(begin[order][(int(bare_rad.argmax()) + 1) % len(order)])
 
     def _turned(self, ends_m: FloatArray, first_rad: float) -> tuple[FloatArray, FloatArray]:
         """Return from where (n,) to where (n,) chords (n, 2, 2) reach around the centre."""
-        seen = (ends_m - self._centre_m) @ np.array([1, 1j])
-        turn = np.angle(seen[:, 1] * seen[:, 0].conjugate())
-        start = np.angle(np.where(turn >= 0, seen[:, 0], seen[:, 1]) * np.exp(-1j * first_rad))
+        ends = (ends_m - self._centre_m) @ np.array([1, 1j])
+        turn = np.angle(ends[:, 1] * ends[:, 0].conjugate())
+        start = np.angle(np.where(turn >= 0, ends[:, 0], ends[:, 1]) * np.exp(-1j * first_rad))
         begin = np.where(start < -_ROUNDING_RAD, start + 2 * np.pi, start)
         return begin, begin + np.abs(turn)
 
@@ -78,8 +78,8 @@ class Ring:
 
         What lies between its sides all along, as they err, is a chord as well, or a jamb.
         """
-        known = {id(face) for face in self.faces}
-        lengths_m = [[(id(f) in known, f.length_m) for f in wall.members] for wall in walls]
+        known = set(self.faces)
+        lengths_m = [[(f in known, f.length_m) for f in wall.members] for wall in walls]
         shown_m = np.array([sum(m for is_own, m in of if is_own) for of in lengths_m])
         whole_m = np.array([sum(m for _, m in of) for of in lengths_m])
         low_m, high_m = self._radii_m
@@ -94,8 +94,8 @@ class Ring:
 
     def add_faces(self, chords: Sequence[PlanWall]) -> "Ring":
         """Return it with all faces of its chords that lie on its circles, however short."""
-        known = {id(face) for face in self.faces}
-        rest = [face for wall in chords for face in wall.members if id(face) not in known]
+        known = set(self.faces)
+        rest = [face for wall in chords for face in wall.members if face not in known]
         ends_m = np.array([face.ends for face in rest]).reshape(-1, 2, 2) - self._centre_m
         normals = np.array([face.line.normal for face in rest]).reshape(-1, 2)
         away = np.sum(ends_m.mean(axis=1) * normals, axis=1)
@@ -119,8 +119,8 @@ class Ring:
         """
         first = self._begin_rad
         spans = np.column_stack(self._turned(self._ends_m, first))
-        ways = self._choose_openings(chords, spans, first, opening.min_opening_m)
-        known = np.concatenate([spans, np.array([of[0] for of in ways]).reshape(-1, 2)])
+        placed = self._choose_openings(chords, spans, first, opening.min_opening_m)
+        known = np.concatenate([spans, np.array([of[0] for of in placed]).reshape(-1, 2)])
         closed: list[tuple[FloatArray, Opening]] = []
         low, high = float(known.min()), float(known.max())
         breaks: list[float] = []
@@ -130,15 +130,15 @@ class Ring:
                 closed.append((span, gap))
             elif gap.state == OPEN and gap.n_rays:
                 kind = "window" if gap.is_above_wall else "door"
-                ways.append((span, replace(gap, kind=kind)))
+                placed.append((span, replace(gap, kind=kind)))
             else:
                 breaks += span.tolist()
         # around the whole circle nothing parts its end from where it began
         goes_around = not breaks or breaks[-2] != high
         breaks = [low, *breaks, low + 2 * np.pi] if goes_around else [low, *breaks[:-1]]
         for low, high in np.sort(breaks).reshape(-1, 2).tolist():
-            for begin, end in itertools.pairwise(_part(low, high, [of for of, _ in ways])):
-                wall = self._draw_wall(first, (begin, end), chords, ways, closed)
+            for begin, end in itertools.pairwise(_part(low, high, [of for of, _ in placed])):
+                wall = self._draw_wall(first, (begin, end), chords, placed, closed)
                 if wall.members:
                     yield wall
 
@@ -167,9 +167,9 @@ class Ring:
             others = [np.clip(other, *span) for other, _ in chosen]
             common = sum(float(np.ptp(other)) for other in others)
             if 2 * np.ptp(free, axis=1).sum() > np.ptp(span) and 2 * common < np.ptp(span):
-                way = span if gap.is_above_wall else _widest(free)
-                if np.ptp(way) * np.mean(self._radii_m) >= min_width_m:
-                    chosen.append((way, gap))
+                reached = span if gap.is_above_wall else _widest(free)
+                if np.ptp(reached) * np.mean(self._radii_m) >= min_width_m:
+                    chosen.append((reached, gap))
         return chosen
 
     def _classify(
@@ -183,17 +183,21 @@ class Ring:
             nothing = (math.nan, math.nan)
             state = CLOSED if width_m < opening.min_opening_m else UNKNOWN
             return Opening(-half_m, half_m, state, 0, *nothing, below_wall=False)
-        seen = observe_face(
-            *(rays, line, -half_m - END_M, half_m + END_M), band_m=reading.band_m + 2 * END_M
+        observation = observe_face(
+            rays,
+            line,
+            -half_m - END_M,
+            half_m + END_M,
+            band_m=reading.band_m + 2 * END_M,
         )
-        return classify_gap(line, -half_m, half_m, [seen], opening)
+        return classify_gap(line, -half_m, half_m, [observation], opening)
 
     def _draw_wall(
         self,
         first: float,
         span: tuple[float, float],
         chords: Sequence[PlanWall],
-        ways: Sequence[tuple[FloatArray, Opening]],
+        placed: Sequence[tuple[FloatArray, Opening]],
         closed: Sequence[tuple[FloatArray, Opening]],
     ) -> PlanWall:
         is_thick = len(self.curve.circles.radii_m) == 2
@@ -221,7 +225,7 @@ class Ring:
             thickness_m=float(np.ptp(self._radii_m)) if is_thick else math.nan,
             left=sides[left],
             right=sides[OUTER] if is_thick else [],
-            openings=inside(ways),
+            openings=inside(placed),
             closed=inside(closed),
             p_wall=_pool(np.array([wall.p_wall for wall in chords]), weight),
             p_solid=p_solid,
@@ -260,12 +264,12 @@ def _widest(spans: FloatArray) -> FloatArray:
     return spans[np.ptp(spans, axis=1).argmax()]
 
 
-def _part(low: float, high: float, ways: Sequence[FloatArray]) -> list[float]:
+def _part(low: float, high: float, spans: Sequence[FloatArray]) -> list[float]:
     """Return where walls along a stretch begin and end, none turning too far nor in an opening."""
     n_walls = math.ceil((high - low) / _MOST_TURN_RAD)
     places = np.linspace(low, high, n_walls + 1)
     for number in range(1, n_walls):
-        for way in ways:
-            if way[0] < places[number] < way[1]:
-                places[number] = way[np.abs(way - places[number]).argmin()]
+        for span in spans:
+            if span[0] < places[number] < span[1]:
+                places[number] = span[np.abs(span - places[number]).argmin()]
     return places.tolist()

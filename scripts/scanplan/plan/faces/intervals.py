@@ -29,21 +29,21 @@ _MOST_TURN_RAD = np.radians(3)  # a line of segments turns by noise alone; more 
 
 @dataclass(frozen=True, eq=False)
 class FaceInterval(Span):
-    """An interval of wall surface: from `low_m` to `high_m` along the line of `seen`."""
+    """An interval of wall surface: from `low_m` to `high_m` along the line of `observation`."""
 
-    seen: FaceObservation
+    observation: FaceObservation
     low_m: float
     high_m: float
 
     @property
     def line(self) -> Line:
         """The line it lies on."""
-        return self.seen.line
+        return self.observation.line
 
     @cached_property
     def points(self) -> slice:
-        """The slice of the points of `seen` that show it."""
-        return self.seen.occupied_between(self.low_m, self.high_m)
+        """The slice of the points of `observation` that show it."""
+        return self.observation.occupied_between(self.low_m, self.high_m)
 
     @property
     def n_points(self) -> int:
@@ -53,7 +53,7 @@ class FaceInterval(Span):
     @cached_property
     def scans(self) -> IntArray:
         """The scans (k,) that show it, increasing."""
-        return np.unique(self.seen.occupied_scan[self.points])
+        return np.unique(self.observation.occupied_scan[self.points])
 
     @property
     def n_scans(self) -> int:
@@ -127,7 +127,7 @@ def refit_to_points(line: Line, along: FloatArray, offset: FloatArray) -> Line:
 
 
 def find_face_intervals(
-    seen: FaceObservation,
+    observation: FaceObservation,
     *,
     door_height_m: float,
     max_gap_m: float,
@@ -139,7 +139,7 @@ def find_face_intervals(
 
     Parameters
     ----------
-    seen : face_observation.FaceObservation
+    observation : face_observation.FaceObservation
     door_height_m : float, > 0
         What is higher says nothing about a way through.
     max_gap_m : float, >= 0
@@ -153,9 +153,9 @@ def find_face_intervals(
     list of FaceInterval
         In order along the line.
     """
-    if len(seen.occupied_m) == 0:
+    if len(observation.occupied_m) == 0:
         return []
-    raster = seen.raster
+    raster = observation.raster
     is_foreign = _is_within(raster, foreign_m)
     is_solid = raster.is_solid(door_height_m) & ~is_foreign
     is_opened = raster.is_opened(door_height_m)
@@ -163,7 +163,7 @@ def find_face_intervals(
     for first, last in _join_columns(is_solid, is_opened, max_gap_m):
         low_m = raster.first_m + CELL_M * first
         high_m = raster.first_m + CELL_M * (last + 1)
-        intervals.append(_trim_ends(FaceInterval(seen, float(low_m), float(high_m))))
+        intervals.append(_trim_ends(FaceInterval(observation, float(low_m), float(high_m))))
     return intervals
 
 
@@ -199,7 +199,7 @@ def _trim_ends(interval: FaceInterval) -> FaceInterval:
     scan or another is misplaced, and by what that scan sees of a door's reveal. A scan that sees an
     end shows it to half the distance of its points.
     """
-    observation = interval.seen
+    observation = interval.observation
     # a point on the edge of a column is in it, whichever way the edge was rounded
     points = observation.occupied_between(interval.low_m - ROUNDING, interval.high_m + ROUNDING)
     along_m = observation.occupied_m[points]

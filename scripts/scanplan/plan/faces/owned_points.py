@@ -12,7 +12,7 @@ from scanplan.rays.face_observation import FaceObservation
 
 
 def owned_intervals(
-    lines: Sequence[FaceObservation], found: Sequence[FaceInterval]
+    observations: Sequence[FaceObservation], found: Sequence[FaceInterval]
 ) -> list[list[tuple[float, float]]]:
     """Return from where to where along lines others cross them: points there are theirs.
 
@@ -21,7 +21,7 @@ def owned_intervals(
 
     Parameters
     ----------
-    lines : list of face_observation.FaceObservation
+    observations : list of face_observation.FaceObservation
     found : list of intervals.FaceInterval
 
     Returns
@@ -33,10 +33,10 @@ def owned_intervals(
     owners = [
         interval
         for interval in found
-        if _unowned_m(interval, _crossed_m(interval.seen, found, stacked)) >= END_M
+        if _unowned_m(interval, _crossed_m(interval.observation, found, stacked)) >= END_M
     ]
     stacked = intersections.stack_spans(owners)
-    return [_crossed_m(seen, owners, stacked) for seen in lines]
+    return [_crossed_m(observation, owners, stacked) for observation in observations]
 
 
 def _unowned_m(interval: FaceInterval, owned_m: list[tuple[float, float]]) -> float:
@@ -51,15 +51,15 @@ def _unowned_m(interval: FaceInterval, owned_m: list[tuple[float, float]]) -> fl
 
 
 def _crossed_m(
-    seen: FaceObservation, found: Sequence[FaceInterval], stacked: SpanArrays
+    observation: FaceObservation, found: Sequence[FaceInterval], stacked: SpanArrays
 ) -> list[tuple[float, float]]:
     """Return from where to where along a line intervals of other lines cross it: (low, high)."""
-    crossings = intersections.find_crossings(seen.line, stacked, reach_m=END_M)
+    crossings = intersections.find_crossings(observation.line, stacked, reach_m=END_M)
     half_m = FACE_M / crossings.sine
     return [
         (place_m - width_m, place_m + width_m)
         for number, place_m, width_m in zip(
             crossings.which.tolist(), crossings.place_m, half_m, strict=True
         )
-        if found[number].seen is not seen
+        if found[number].observation is not observation
     ]

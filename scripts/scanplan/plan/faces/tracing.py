@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 import shapely
 
+from scanplan.geometry.lines import Line
 from scanplan.plan.faces import candidates, intervals, trimming
 from scanplan.plan.faces.candidates import FaceCandidate
 from scanplan.plan.faces.face_tree import FaceTree
@@ -90,14 +91,14 @@ def trace_faces(
         max_gap_m=reading.max_gap_m,
     )
     observations = _observe_lines(face_candidates, rays, reading)
-    owners = selection.select_walls(find_intervals(seen) for seen in observations)
+    owners = selection.select_walls(find_intervals(observation) for observation in observations)
     owned_m = owned_intervals(observations, owners)
     walls = selection.select_walls(
-        find_intervals(seen, foreign_m=spans_m)
-        for seen, spans_m in zip(observations, owned_m, strict=True)
+        find_intervals(observation, foreign_m=spans_m)
+        for observation, spans_m in zip(observations, owned_m, strict=True)
     )
     faces = selection.meet_at_corners(selection.trim(walls))
-    n_traced = len({id(face.seen) for face in faces})
+    n_traced = len({face.observation for face in faces})
     return TracedFaces(
         faces=faces,
         n_lines=len(observations),
@@ -109,15 +110,20 @@ def _observe_lines(
     face_candidates: Iterable[FaceCandidate], rays: RaySet, reading: RaySettings
 ) -> list[FaceObservation]:
     """Return the observation of each line that candidates share, from the first to the last."""
-    of_line: dict[int, list[FaceCandidate]] = {}
+    of_line: dict[Line, list[FaceCandidate]] = {}
     for candidate in face_candidates:
-        of_line.setdefault(id(candidate.line), []).append(candidate)
+        of_line.setdefault(candidate.line, []).append(candidate)
 
     def observe_line(group: Sequence[FaceCandidate]) -> FaceObservation:
         low_m = min(candidate.low_m for candidate in group)
         high_m = max(candidate.high_m for candidate in group)
         return intervals.observe_along(
-            *(rays, group[0].line, low_m, high_m), band_m=reading.band_m, reach_m=reading.reach_m
+            rays,
+            group[0].line,
+            low_m,
+            high_m,
+            band_m=reading.band_m,
+            reach_m=reading.reach_m,
         )
 
     # one after the other: two threads would wait for each other's many short steps

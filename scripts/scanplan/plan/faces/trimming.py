@@ -90,7 +90,7 @@ def _without_tails(interval: FaceInterval, places_m: FloatArray, share: float) -
             if not END_M < tail_m <= _TAIL_M:
                 continue
             begin_m, stop_m = sorted((place_m + sign * END_M, end_m))
-            n_points = _count_points(interval.seen, begin_m, stop_m)
+            n_points = _count_points(interval.observation, begin_m, stop_m)
             if n_points < least_per_m * (tail_m - END_M):
                 interval = replace(interval, **{name: place_m})
     return interval
@@ -132,6 +132,6 @@ def _select_loser(pair: list[FaceInterval], places_m: tuple[float, float], arm_m
 
 def _scatter_m(interval: FaceInterval, begin_m: float, end_m: float) -> float:
     """Return how far points scatter about a part of an interval; without any, endlessly."""
-    points = interval.seen.occupied_between(min(begin_m, end_m), max(begin_m, end_m))
-    offset_m = interval.seen.occupied_off_m[points]
+    points = interval.observation.occupied_between(min(begin_m, end_m), max(begin_m, end_m))
+    offset_m = interval.observation.occupied_off_m[points]
     return float(np.sqrt(np.mean(offset_m**2))) if len(offset_m) else math.inf

@@ -49,7 +49,7 @@ class FrontLimits:
 def drop_fronts(
     walls: list[PlanWall],
     floor: BaseGeometry,
-    seen: BaseGeometry,
+    seen_floor: BaseGeometry,
     assemble: Callable[[Sequence[FaceInterval]], list[PlanWall]],
     limits: FrontLimits,
 ) -> tuple[list[PlanWall], list[BaseGeometry], list[Leaf]]:
@@ -60,7 +60,7 @@ def drop_fronts(
     Parameters
     ----------
     walls : list of plan_wall.PlanWall
-    floor, seen : shapely geometry
+    floor, seen_floor : shapely geometry
         That was seen free, by the scans that show the walls, and by any. What others saw of a
         pocket may be a sliver through a door: it is none if they saw most of it.
     assemble : callable
@@ -74,14 +74,14 @@ def drop_fronts(
         for leaf in leaves:
             faces = [piece for face in faces for piece in leaf.cut_off(face)]
         traces = find_traces(leaves, faces, ghost_distance_m=limits.ghost_distance_m)
-        are_traces = set(map(id, traces))
-        walls = assemble([face for face in faces if id(face) not in are_traces])
+        are_traces = set(traces)
+        walls = assemble([face for face in faces if face not in are_traces])
     grounds: list[BaseGeometry] = [leaf.ground for leaf in leaves]
 
     def find_more() -> list[Pocket]:
         free = free_space.union_on_grid([floor, *grounds])
         pockets = find_pockets(walls, free, unpaired_m=usual_thickness_m(walls), **most)
-        seen_m2 = shapely.area(overlays.intersect_areas([of.ground for of in pockets], seen))
+        seen_m2 = shapely.area(overlays.intersect_areas([of.ground for of in pockets], seen_floor))
         return [
             pocket
             for pocket, of_it_m2 in zip(pockets, seen_m2, strict=True)
@@ -97,5 +97,5 @@ def drop_fronts(
 
 def _faces_but(walls: Sequence[PlanWall], dropped: Sequence[FaceInterval]) -> list[FaceInterval]:
     """Return the faces of walls without those dropped."""
-    without = set(map(id, dropped))
-    return [face for face in list_faces(walls) if id(face) not in without]
+    without = set(dropped)
+    return [face for face in list_faces(walls) if face not in without]

@@ -43,7 +43,7 @@ class Leaf:
 
     def cut_off(self, face: FaceInterval) -> list[FaceInterval]:
         """Return a surface, or it and the rest of the one that it was seen as a part of."""
-        if face.seen is not self.face.seen:
+        if face.observation is not self.face.observation:
             return [face]
         low_m, high_m = self.face.low_m, self.face.high_m
         if not face.low_m <= low_m < high_m <= face.high_m:
@@ -81,19 +81,19 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: fl
     max_width_m : float
         Of a door from where one wall ends to where another goes on in its line.
     """
-    ways = [
-        _Way.of_gap(wall, *gap_m, unpaired_m)
+    doorways = [
+        _Doorway.of_gap(wall, *gap_m, unpaired_m)
         for wall in walls
         for gap_m in _find_gaps(wall, walls, max_width_m)
     ]
-    tree = STRtree([LineString(way.ends_m) for way in ways])
-    reach_m = max((way.reach_m for way in ways), default=0.0)
+    tree = STRtree([LineString(doorway.ends_m) for doorway in doorways])
+    reach_m = max((doorway.reach_m for doorway in doorways), default=0.0)
     faces = list_faces(walls)
     leaves = []
     for wall in walls:
         for face in wall.members:
             near = tree.query(LineString(face.ends), predicate="dwithin", distance=reach_m)
-            others = [ways[i] for i in np.sort(near) if ways[i].wall is not wall]
+            others = [doorways[i] for i in np.sort(near) if doorways[i].wall is not wall]
             leaf = next(_find_leaves_of(face, others, faces, max_width_m), None)
             if leaf:
                 leaves.append(leaf)
@@ -102,14 +102,14 @@ def find_leaves(walls: Sequence[PlanWall], *, unpaired_m: float, max_width_m: fl
 
 def _find_leaves_of(
     face: FaceInterval,
-    ways: Sequence["_Way"],
+    doorways: Sequence["_Doorway"],
     faces: Sequence[FaceInterval],
     max_width_m: float,
 ) -> Iterator[Leaf]:
     """Yield the leaves that a surface may be, or what of it lies on one side of a way."""
-    for way in ways:
-        for piece in way.cut(face):
-            for part in way.parts(piece, max_width_m):
+    for doorway in doorways:
+        for piece in doorway.cut(face):
+            for part in doorway.parts(piece, max_width_m):
                 tip_m = part.find_tip(piece)
                 if tip_m is not None and _is_free(piece, tip_m, faces):
                     yield Leaf(piece, part.ends_m)
@@ -126,7 +126,7 @@ def _find_gaps(
         gaps_m = ((high_m, wall.low_m), (wall.high_m, low_m))
         # what is open for longer than it is wall is the space between two things
         most_m = min(max_width_m, wall.length_m + other.length_m)
-        gap_m = next((gap for gap in gaps_m if 0 < gap[1] - gap[0] <= most_m), None)
+        gap_m = next((span_m for span_m in gaps_m if 0 < span_m[1] - span_m[0] <= most_m), None)
         if gap_m and wall.goes_on_as(other) and not _is_closed(wall, gap_m, walls):
             yield gap_m
 
@@ -146,8 +146,8 @@ def find_traces(
     ends free: a wall behind a leaf ends at another.
     """
     of_leaves = [face for face in faces if any(leaf.hides(face) for leaf in leaves)]
-    known = set(map(id, of_leaves))
-    others = [face for face in faces if id(face) not in known]
+    known = set(of_leaves)
+    others = [face for face in faces if face not in known]
     traces = []
     for face in others:
         around = [leaf for leaf in leaves if leaf.is_shown_again_by(face, ghost_distance_m)]
@@ -158,9 +158,9 @@ def find_traces(
 
 def _farther_end(face: FaceInterval, way_m: FloatArray) -> FloatArray:
     """Return the end (2,) of a surface that is farther from a way (2, 2)."""
-    way = LineString(way_m)
+    line = LineString(way_m)
     one_m, other_m = face.ends
-    return max(one_m, other_m, key=lambda end_m: way.distance(Point(end_m)))
+    return max(one_m, other_m, key=lambda end_m: line.distance(Point(end_m)))
 
 
 def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterval]) -> bool:
@@ -173,7 +173,8 @@ def _is_free(face: FaceInterval, tip_m: FloatArray, others: Sequence[FaceInterva
     most_off_m = CORNER_M if is_thin else BEHIND_M
     for other in others:
         is_whole = (
-            other.seen is face.seen and other.low_m <= face.low_m < face.high_m <= other.high_m
+            other.observation is face.observation
+            and other.low_m <= face.low_m < face.high_m <= other.high_m
         )
         if is_whole or LineString(other.ends).distance(tip) > CORNER_M:
             continue
@@ -200,7 +201,7 @@ def _beside_m(face: FaceInterval, other: FaceInterval, most_m: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Way:
+class _Doorway:
     """An opening (2, 2) of a wall, from jamb to jamb, and its jambs from face to face."""
 
     wall: PlanWall
@@ -209,13 +210,13 @@ class _Way:
     unpaired_m: float
 
     @staticmethod
-    def of_gap(wall: PlanWall, low_m: float, high_m: float, unpaired_m: float) -> "_Way":
+    def of_gap(wall: PlanWall, low_m: float, high_m: float, unpaired_m: float) -> "_Doorway":
         """Return the way through a wall, or beyond its end, from one place along it to another."""
         is_single = np.isnan(wall.thickness_m)
         across_m = np.array([-unpaired_m if is_single else -wall.half_m, wall.half_m])
         ends_m = wall.line.at(np.array([low_m, high_m]))
         low, high = (LineString(end + across_m[:, None] * wall.line.normal) for end in ends_m)
-        return _Way(wall, ends_m, (low, high), unpaired_m)
+        return _Doorway(wall, ends_m, (low, high), unpaired_m)
 
     def cut(self, face: FaceInterval) -> list[FaceInterval]:
         """Return a surface, or its pieces on either side: no wall runs on through a way."""
@@ -232,7 +233,7 @@ class _Way:
         """How far from its middle line a leaf may begin: hinges are anywhere in a jamb."""
         return self.jambs[0].length / 2 + BEHIND_M + END_M
 
-    def parts(self, face: FaceInterval, max_width_m: float) -> "Iterator[_Way]":
+    def parts(self, face: FaceInterval, max_width_m: float) -> "Iterator[_Doorway]":
         """Yield the way, and doors on either side of where a surface hangs in it.
 
         There a jamb is that something before it hides.
@@ -247,7 +248,7 @@ class _Way:
                 continue
             for begin_m, end_m in sides_m:
                 if end_m - begin_m <= max_width_m:
-                    yield _Way.of_gap(self.wall, begin_m, end_m, self.unpaired_m)
+                    yield _Doorway.of_gap(self.wall, begin_m, end_m, self.unpaired_m)
 
     def find_tip(self, face: FaceInterval) -> FloatArray | None:
         """Return the end (2,) of a leaf that hangs here at its other; None of another surface."""

@@ -38,7 +38,7 @@ def cut_off_pillars(
 
     def ends_free(wall: PlanWall, end_m: float, sign: int) -> bool:
         low_m, high_m = sorted([end_m, end_m + sign * min_width_m])
-        return classify(wall.line, low_m, high_m, wall.lines).state == OPEN
+        return classify(wall.line, low_m, high_m, wall.observations).state == OPEN
 
     def leads_to_pillar(
         wall: PlanWall, opening: Opening, met_m: Sequence[float], sign: int

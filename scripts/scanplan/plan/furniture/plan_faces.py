@@ -23,7 +23,7 @@ class PlanFaces(FaceTree):
         self._centre_m = self._ends_m.mean(axis=1)
         self._length_m = np.array([face.length_m for face in faces])
         self._normal = np.array([face.line.normal for face in faces]).reshape(-1, 2)
-        self._on_line_m: dict[int, tuple[FloatArray, FloatArray]] = {}
+        self._on_line_m: dict[FaceInterval, tuple[FloatArray, FloatArray]] = {}
 
     def behind(self, ground: BaseGeometry) -> list[FaceInterval]:
         """Return the faces on whose lines ground before them ends, or near."""
@@ -125,13 +125,13 @@ class PlanFaces(FaceTree):
 
     def _along_line_m(self, face: FaceInterval) -> tuple[FloatArray, FloatArray]:
         """Return from where (n,) to where faces of the same way lie on the line of one."""
-        if id(face) not in self._on_line_m:
+        if face not in self._on_line_m:
             off_m = face.line.offset_m(self._centre_m)
             is_on = self._faces_alike(face) & (np.abs(off_m) <= FACE_M)
             along_m = face.line.along_m(self._centre_m[is_on])
             half_m = self._length_m[is_on] / 2
-            self._on_line_m[id(face)] = along_m - half_m, along_m + half_m
-        return self._on_line_m[id(face)]
+            self._on_line_m[face] = along_m - half_m, along_m + half_m
+        return self._on_line_m[face]
 
     def _faces_alike(self, face: FaceInterval) -> BoolArray:
         """Return which faces (n,) face much the same way as one."""

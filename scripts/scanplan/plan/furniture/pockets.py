@@ -72,23 +72,23 @@ def find_pockets(
         faces=PlanFaces(list_faces(walls)),
         parts=parts,
         grown=overlays.buffer_shapes(parts, CELL_M, quad_segs=8),
-        single={id(face) for face in alone},
-        opened=set(map(id, list_faces([wall for wall in walls if wall.openings]))),
-        continued={id(face) for wall in walls for face in _find_continued(wall)},
-        dividing=set(map(id, _find_dividing(walls, strips, unpaired_m))),
+        single=set(alone),
+        opened=set(list_faces([wall for wall in walls if wall.openings])),
+        continued={face for wall in walls for face in _find_continued(wall)},
+        dividing=set(_find_dividing(walls, strips, unpaired_m)),
         unpaired_m=unpaired_m,
         max_thickness_m=max_thickness_m,
         max_depth_m=max_depth_m,
     )
     pockets: list[Pocket] = []
-    found: set[int] = set()
+    found: set[FaceInterval] = set()
     holes = ((None, hole) for hole in find_holes(known))
     recesses = find_recesses(alone, search.faces, floor, max_depth_m)
     for own, hidden in itertools.chain(holes, recesses):
-        pocket = None if id(own) in found else search.find_pocket(own, hidden)
+        pocket = None if own in found else search.find_pocket(own, hidden)
         if pocket is not None:
             pockets.append(pocket)
-            found.update(map(id, pocket.fronts))
+            found.update(pocket.fronts)
     return pockets
 
 
@@ -102,9 +102,9 @@ class _Search:
         All of the plan.
     parts, grown : (n,) object
         Of the floor that was seen, polygons; the same, by a cell larger.
-    single, opened, continued, dividing : set of int
-        Identities of the faces of walls seen from one side, of those with an opening, of those that
-        go on beyond one, and of those with one that begin at another wall.
+    single, opened, continued, dividing : set of intervals.FaceInterval
+        The faces of walls seen from one side, of those with an opening, of those that go on beyond
+        one, and of those with one that begin at another wall.
     unpaired_m, max_thickness_m, max_depth_m : float
         As in `find_pockets`.
     """
@@ -112,10 +112,10 @@ class _Search:
     faces: PlanFaces
     parts: Array
     grown: Array
-    single: set[int]
-    opened: set[int]
-    continued: set[int]
-    dividing: set[int]
+    single: set[FaceInterval]
+    opened: set[FaceInterval]
+    continued: set[FaceInterval]
+    dividing: set[FaceInterval]
     unpaired_m: float
     max_thickness_m: float
     max_depth_m: float
@@ -126,7 +126,7 @@ class _Search:
         behind = [
             face
             for face in near
-            if id(face) in self.single and _backs_onto(face, hidden, self.unpaired_m)
+            if face in self.single and _backs_onto(face, hidden, self.unpaired_m)
         ]
         seen_m2 = shapely.area(
             overlays.intersect_areas(overlays.buffer_shapes(hidden, CORNER_M), self.parts)
@@ -151,7 +151,7 @@ class _Search:
         outer = [
             face
             for face in (fronts if own is None else [face for face in behind if face is own])
-            if id(face) not in self.opened
+            if face not in self.opened
             and stands_before_facade(face, hidden, self.faces, self.max_depth_m)
         ]
         if not outer:
@@ -178,7 +178,7 @@ class _Search:
             return None
         walls = self.faces.behind(pocket.ground) if own else self.faces.backs(near, fronts)
         # a row of cupboards along a wall has gaps, too; it does not begin at a wall across
-        dividing = [face for face in fronts if id(face) in self.dividing]
+        dividing = [face for face in fronts if face in self.dividing]
         # a wall across at its end does not tell a long front from a wall that ends in a corner
         beside = [*dividing, own] if own is not None and own.length_m > DEEPEST_M else dividing
         walls = [
@@ -189,7 +189,9 @@ class _Search:
         # its ends, too, that were paired with what stands in their line
         pocket = Pocket(pocket.ground, faces_on(pocket.ground, near))
         stands_alone = is_block(
-            *(pocket.ground, part, self.unpaired_m),
+            pocket.ground,
+            part,
+            self.unpaired_m,
             max_thickness_m=self.max_thickness_m,
             max_depth_m=self.max_depth_m,
         )
@@ -237,10 +239,10 @@ def _find_dividing(
             yield from wall.members
 
 
-def _goes_on(pocket: Pocket, continued: set[int]) -> bool:
+def _goes_on(pocket: Pocket, continued: set[FaceInterval]) -> bool:
     """Return whether a block's sides, not its short ends alone, go on beyond an opening."""
     longest_m = max((face.length_m for face in pocket.fronts), default=0.0)
-    return any(id(face) in continued and 2 * face.length_m > longest_m for face in pocket.fronts)
+    return any(face in continued and 2 * face.length_m > longest_m for face in pocket.fronts)
 
 
 def _faces_onto(face: FaceInterval, part: Polygon) -> bool:

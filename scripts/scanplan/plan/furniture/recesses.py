@@ -45,12 +45,12 @@ def find_recesses(
     max_depth_m : float
         Of furniture, from its front to its back.
     """
-    seen = overlays.buffer_shapes(floor, CELL_M)
+    seen_floor = overlays.buffer_shapes(floor, CELL_M)
     for front in fronts:
         for wall, _ in _find_walls_behind(front, faces, max_depth_m):
             foot_m = wall.line.at(wall.line.along_m(front.ends))
             between = Polygon([*front.ends, *foot_m[::-1]])
-            hidden = free_space.difference_on_grid(between, seen)
+            hidden = free_space.difference_on_grid(between, seen_floor)
             largest = max(hidden.geoms, key=lambda part: part.area, default=None)
             if largest is not None and largest.area >= ALONG_SHARE * between.area:
                 yield front, overlays.buffer_shapes(largest, CELL_M, join_style="mitre")

@@ -99,7 +99,7 @@ def find_front_rows(walls: Sequence[PlanWall], rays: RaySet) -> list[FrontRow]:
         Those that answer from near first.
     """
     answers = _find_answers(walls, rays)
-    rows = [row for way in _find_directions(walls) for row in _find_rows(answers, way)]
+    rows = [row for direction in _find_directions(walls) for row in _find_rows(answers, direction)]
     return sorted(rows, key=lambda row: float(np.median(np.hypot(*row.answers.way_m.T))))
 
 
@@ -156,13 +156,13 @@ def _are_same(one_rad: float, other_rad: float) -> bool:
     return abs(math.remainder(one_rad - other_rad, math.pi)) < _SAME_RAD
 
 
-def _find_rows(answers: Answers, way: FloatArray) -> list[FrontRow]:
+def _find_rows(answers: Answers, direction: FloatArray) -> list[FrontRow]:
     """Return the rows of answers to rays that come square to lines that run one way (2,)."""
-    normal = np.array([-way[1], way[0]])
+    normal = np.array([-direction[1], direction[0]])
     square = answers.choose(answers.are_square(normal))
     if not len(square.xy_m):
         return []
-    place_m = square.xy_m @ np.column_stack([normal, way])
+    place_m = square.xy_m @ np.column_stack([normal, direction])
     cell_m, margin_m = np.array([_ACROSS_M, _ALONG_M]), np.array([2 * _BESIDE_M[1], _WINDOW_M])
     first_m = place_m.min(axis=0) - margin_m
     cell = np.floor((place_m - first_m) / cell_m).astype(np.int64)
@@ -170,14 +170,14 @@ def _find_rows(answers: Answers, way: FloatArray) -> list[FrontRow]:
     is_answered[cell[:, 0], cell[:, 1]] = True
     # what lies about the edge between two cells is one
     is_answered[:-1] |= is_answered[1:]
-    lines: list[list[_Run]] = []
+    collinear: list[list[_Run]] = []
     for run in sorted(_find_runs(is_answered, first_m), key=lambda run: -run.clear):
-        near = [line for line in lines if abs(line[0].across_m - run.across_m) <= _SAME_M]
+        near = [runs for runs in collinear if abs(runs[0].across_m - run.across_m) <= _SAME_M]
         if near:
             near[0].append(run)
         else:
-            lines.append([run])
-    return [_fit_row(square, normal, runs) for runs in lines]
+            collinear.append([run])
+    return [_fit_row(square, normal, runs) for runs in collinear]
 
 
 def _find_runs(is_answered: BoolArray, first_m: FloatArray) -> Iterator[_Run]:
@@ -203,14 +203,14 @@ def _find_runs(is_answered: BoolArray, first_m: FloatArray) -> Iterator[_Run]:
 
 def _fit_row(square: Answers, normal: FloatArray, runs: Sequence[_Run]) -> FrontRow:
     """Return a row of answers on the line that fits them best, near the clearest run."""
-    way = np.array([normal[1], -normal[0]])
-    across_m, along_m = square.xy_m @ normal, square.xy_m @ way
+    direction = np.array([normal[1], -normal[0]])
+    across_m, along_m = square.xy_m @ normal, square.xy_m @ direction
     is_on = np.abs(across_m - runs[0].across_m) <= FACE_M
     is_on &= line_labels.is_between(along_m, np.array([(run.low_m, run.high_m) for run in runs]))
     on = square.choose(is_on)
     if np.ptp(along_m[is_on]) > _WINDOW_M:
         slope = float(np.polyfit(along_m[is_on], across_m[is_on], 1)[0])
-        normal = (normal - slope * way) / math.hypot(1, slope)
+        normal = (normal - slope * direction) / math.hypot(1, slope)
     line = Line(on.xy_m.mean(axis=0), normal)
     ends_m = line.along_m(on.xy_m)
     return FrontRow(line, float(ends_m.min()), float(ends_m.max()), on)

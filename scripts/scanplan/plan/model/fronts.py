@@ -92,9 +92,9 @@ def find_fronts(walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray) ->
         counts = _count_row(front_rows.extend_row(row, spans), rays, track_m)
         stretches = line_labels.label_line(counts, line=priors.FRONT)
         panes = list(_list_panes(stretches))
-        ways = [stretch for stretch in stretches if stretch.kind == "door" and panes]
+        doors = [stretch for stretch in stretches if stretch.kind == "door" and panes]
         fronts.panes.extend((row.line, *pane) for pane in panes)
-        fronts.ways_m.extend(row.line.at(np.array([way.low_m, way.high_m])) for way in ways)
+        fronts.ways_m.extend(row.line.at(np.array([door.low_m, door.high_m])) for door in doors)
         drawn.extend(shapely.LineString(row.line.at(np.array(pane))) for pane in panes)
     return fronts
 
@@ -107,8 +107,8 @@ def _is_seen_through(row: FrontRow, panes: Sequence[shapely.LineString]) -> bool
     # a pane at the row is its own
     before_m = way_m * (1 - END_M / np.hypot(*way_m.T))[:, None]
     start_m = row.answers.xy_m - way_m
-    ways = shapely.linestrings(np.stack([start_m, start_m + before_m], axis=1))
-    return bool(shapely.intersects(drawn, ways).mean() > _THROUGH)
+    sights = shapely.linestrings(np.stack([start_m, start_m + before_m], axis=1))
+    return bool(shapely.intersects(drawn, sights).mean() > _THROUGH)
 
 
 def _count_row(row: FrontRow, rays: RaySet, track_m: FloatArray) -> SurfaceCounts:

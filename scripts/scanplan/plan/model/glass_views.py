@@ -29,10 +29,10 @@ def find_glass_shares(walls: Sequence[PlanWall], rays: RaySet) -> FloatArray:
     owner = np.array([number for number, _ in panes], np.int64)
     shares = np.zeros(len(walls))
     for number, wall in enumerate(walls):
-        ways = _draw_ways(wall, rays)
-        if len(ways):
-            way, pane = tree.query(ways, predicate="intersects")
-            shares[number] = len(np.unique(way[owner[pane] != number])) / len(ways)
+        sights = _draw_sights(wall, rays)
+        if len(sights):
+            sight, pane = tree.query(sights, predicate="intersects")
+            shares[number] = len(np.unique(sight[owner[pane] != number])) / len(sights)
     return shares
 
 
@@ -45,13 +45,13 @@ def draw_panes(wall: PlanWall) -> list[shapely.LineString]:
     ]
 
 
-def _draw_ways(wall: PlanWall, rays: RaySet) -> Array:
+def _draw_sights(wall: PlanWall, rays: RaySet) -> Array:
     """Return the ways (n,) of some rays, from the sensor to close before a wall's faces."""
     ends_m: list[FloatArray] = [np.empty((0, 2))]
     scans: list[IntArray] = [np.empty(0, np.int64)]
     for face in wall.members:
-        ends_m.append(face.line.at(face.seen.occupied_m[face.points]))
-        scans.append(face.seen.occupied_scan[face.points])
+        ends_m.append(face.line.at(face.observation.occupied_m[face.points]))
+        scans.append(face.observation.occupied_scan[face.points])
     end_m, scan = np.concatenate(ends_m), np.concatenate(scans)
     some = np.unique(np.linspace(0, len(end_m) - 1, min(_MOST_RAYS, len(end_m))).astype(np.int64))
     start_m = rays.sensors_m[scan[some], :2]

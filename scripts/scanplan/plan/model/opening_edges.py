@@ -30,7 +30,9 @@ def measure_opening(wall: PlanWall, stretch: Stretch) -> Opening:
     low_m = _find_jamb_m(wall, stretch, stretch.low_m, 1)
     high_m = _find_jamb_m(wall, stretch, stretch.high_m, -1)
     sill_m, lintel_m = _find_heights_m(wall, stretch)
-    free = [seen.free_between(*span_m) for seen, span_m in _faces_at(wall, low_m, high_m)]
+    free = [
+        observation.free_between(*span_m) for observation, span_m in _faces_at(wall, low_m, high_m)
+    ]
     is_slot = stretch.kind == "open" and high_m - low_m < _PASSAGE_M
     return Opening(
         low_m=low_m,
@@ -50,9 +52,9 @@ def _faces_at(
 ) -> Iterator[tuple[FaceObservation, tuple[float, float]]]:
     """Yield the lines of a wall's faces, and a stretch of the wall as one along each."""
     ends_m = wall.line.at(np.array([low_m, high_m]))
-    for seen in wall.lines:
-        begin_m, end_m = np.sort(seen.line.along_m(ends_m)).tolist()
-        yield seen, (begin_m, end_m)
+    for observation in wall.observations:
+        begin_m, end_m = np.sort(observation.line.along_m(ends_m)).tolist()
+        yield observation, (begin_m, end_m)
 
 
 def _find_jamb_m(wall: PlanWall, stretch: Stretch, edge_m: float, sign: int) -> float:
@@ -64,12 +66,14 @@ def _find_jamb_m(wall: PlanWall, stretch: Stretch, edge_m: float, sign: int) -> 
     scans: list[IntArray] = [np.empty(0, np.int64)]
     above_m = np.nan_to_num(stretch.sill_m, nan=-np.inf) + END_M
     below_m = np.nan_to_num(stretch.lintel_m, nan=np.inf) - END_M
-    for seen, span_m in _faces_at(wall, edge_m - _EDGE_M, edge_m + _EDGE_M):
-        rows = seen.occupied_between(*span_m)
-        z_m = seen.occupied_z_m[rows]
+    for observation, span_m in _faces_at(wall, edge_m - _EDGE_M, edge_m + _EDGE_M):
+        rows = observation.occupied_between(*span_m)
+        z_m = observation.occupied_z_m[rows]
         is_beside = (z_m > above_m) & (z_m < below_m)
-        along_m.append(wall.line.along_m(seen.line.at(seen.occupied_m[rows][is_beside])))
-        scans.append(seen.occupied_scan[rows][is_beside])
+        along_m.append(
+            wall.line.along_m(observation.line.at(observation.occupied_m[rows][is_beside]))
+        )
+        scans.append(observation.occupied_scan[rows][is_beside])
     last_m = _last_of_scans_m(sign * np.concatenate(along_m), np.concatenate(scans))
     return edge_m if last_m is None else sign * last_m
 
@@ -89,9 +93,11 @@ def _find_heights_m(wall: PlanWall, stretch: Stretch) -> tuple[float, float]:
     """Return sill and lintel, by returns and rays near the rows that they are in."""
     occupied: list[FloatArray] = [np.empty(0)]
     free: list[FloatArray] = [np.empty(0)]
-    for seen, (low_m, high_m) in _faces_at(wall, stretch.low_m + END_M, stretch.high_m - END_M):
-        occupied.append(seen.occupied_z_m[seen.occupied_between(low_m, high_m)])
-        free.append(seen.free_z_m[seen.free_between(low_m, high_m)])
+    for observation, (low_m, high_m) in _faces_at(
+        wall, stretch.low_m + END_M, stretch.high_m - END_M
+    ):
+        occupied.append(observation.occupied_z_m[observation.occupied_between(low_m, high_m)])
+        free.append(observation.free_z_m[observation.free_between(low_m, high_m)])
     z_m, free_z_m = np.concatenate(occupied), np.concatenate(free)
     sill_m = stretch.sill_m
     below_m = z_m[z_m < sill_m + _ROW_M]

@@ -173,8 +173,8 @@ def list_labels(n_rows: int, *, line: int) -> Labels:
 def _list_spans_in_plane(panes: Sequence[int]) -> list[tuple[int, int, int, int, int]]:
     """Return kind, first row, row behind the last, state, and that of other rows."""
     closed = [(SOLID, _WALL), (SHUT, _RECESS), *((GLASS, pane) for pane in panes)]
-    ways = [(kind, behind) for kind in (OPEN, DOOR) for behind in _BEHIND]
-    return [(kind, 0, 1, state, _WALL) for kind, state in closed + ways]
+    opened = [(kind, behind) for kind in (OPEN, DOOR) for behind in _BEHIND]
+    return [(kind, 0, 1, state, _WALL) for kind, state in closed + opened]
 
 
 def _list_spans_in_space(n_rows: int, panes: Sequence[int]) -> list[tuple[int, int, int, int, int]]:

@@ -167,7 +167,9 @@ def _count_side(
 ) -> FloatArray:
     span_m = np.sort(side.line.along_m(grid.wall.at(grid.ends_m)))
     face = cast_at_face(
-        *(rays, side.line, *span_m.tolist()),
+        rays,
+        side.line,
+        *span_m.tolist(),
         at_m=AT_M,
         occluded_within_m=expected_returns.NEAR_M,
     )

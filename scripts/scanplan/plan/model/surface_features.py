@@ -109,16 +109,16 @@ class Surroundings:
         witnesses = [
             _Seen.of(wall, of_wall) for wall, of_wall in zip(self.walls, counts, strict=True)
         ]
-        usual = np.median([seen.witnesses for seen in witnesses]) if witnesses else 1.0
+        usual = np.median([shown.witnesses for shown in witnesses]) if witnesses else 1.0
         return [
             Features(
                 length_m=wall.length_m,
                 thickness_m=_or_inf(wall.thickness_m),
-                solid=seen.solid,
-                witnesses=seen.witnesses / max(float(usual), _SEEN),
-                top_m=seen.top_m,
-                overlooked=seen.overlooked,
-                deep=seen.deep,
+                solid=shown.solid,
+                witnesses=shown.witnesses / max(float(usual), _SEEN),
+                top_m=shown.top_m,
+                overlooked=shown.overlooked,
+                deep=shown.deep,
                 n_inner=n_inner,
                 n_outer=n_outer,
                 joint_m=self._find_joint_m(number),
@@ -129,7 +129,7 @@ class Surroundings:
                 turned_deg=float(self._turned_deg[number]),
                 through_glass=float(through_glass[number]),
             )
-            for number, (wall, seen) in enumerate(zip(self.walls, witnesses, strict=True))
+            for number, (wall, shown) in enumerate(zip(self.walls, witnesses, strict=True))
             for n_inner, n_outer in [self._count_corners(number)]
         ]
 
@@ -162,9 +162,11 @@ class Surroundings:
     @cached_property
     def _turned_deg(self) -> FloatArray:
         """Return the angle (n,) of each wall to the directions that most of their length has."""
-        way = np.array([wall.ends[1] - wall.ends[0] for wall in self.walls]).reshape(-1, 2)
-        turn = np.exp(4j * np.arctan2(way[:, 1], way[:, 0]))  # the same of both and across
-        main = (turn * np.hypot(*way.T)).sum()
+        direction = np.array([wall.ends[1] - wall.ends[0] for wall in self.walls]).reshape(-1, 2)
+        turn = np.exp(
+            4j * np.arctan2(direction[:, 1], direction[:, 0])
+        )  # the same of both and across
+        main = (turn * np.hypot(*direction.T)).sum()
         return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
 
     @cached_property

@@ -97,12 +97,11 @@ def _list_sides(wall: PlanWall) -> Iterator[Side]:
         spans_m = np.sort([wall.line.along_m(face.ends) for face in members], axis=-1)
         order = np.argsort(spans_m.reshape(-1, 2)[:, 0]).tolist()
         between_m = [(spans_m[a, 1] + spans_m[b, 0]) / 2 for a, b in pairwise(order)]
-        own: dict[int, tuple[FaceObservation, list[tuple[float, float]]]] = {}
+        own: dict[FaceObservation, list[tuple[float, float]]] = {}
         for row, span_m in zip(order, pairwise([-np.inf, *between_m, np.inf]), strict=False):
-            seen = members[row].seen
-            own.setdefault(id(seen), (seen, []))[1].append(span_m)
-        for seen, asked_m in own.values():
-            yield Side(seen.line, deep_m, np.array(asked_m))
+            own.setdefault(members[row].observation, []).append(span_m)
+        for observation, asked_m in own.items():
+            yield Side(observation.line, deep_m, np.array(asked_m))
 
 
 def _part_runs(

@@ -45,9 +45,10 @@ def find_glass_walls(
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     """
-    ways = [(wall, opening) for wall in walls for opening in wall.openings]
     grounds = [
-        overlays.buffer_shapes(wall_ground.opening_polygon(*way, unpaired_m), END_M) for way in ways
+        overlays.buffer_shapes(wall_ground.opening_polygon(wall, opening, unpaired_m), END_M)
+        for wall in walls
+        for opening in wall.openings
     ]
     open_m2 = overlays.unite_areas(grounds)
     shapely.prepare(open_m2)
@@ -144,8 +145,8 @@ def find_partings(
     known = overlays.buffer_shapes(overlays.unite_areas(strips), END_M)
     doors = [_make_parting(way_m, "door") for way_m in _choose_ways(ways_m, known)]
     # no narrower than the cells that narrow places are looked for in
-    ways = wall_ground.wall_strips(doors, bounds.unpaired_m)
-    grown = [overlays.buffer_shapes(way, CELL_M, join_style="mitre") for way in ways]
+    of_doors = wall_ground.wall_strips(doors, bounds.unpaired_m)
+    grown = [overlays.buffer_shapes(strip, CELL_M, join_style="mitre") for strip in of_doors]
     solid = free_space.union_on_grid([*strips, *grown])
     # what is as narrow as a chair's leg casts a shadow, which is no place to stop at
     ground = floor.ground
@@ -232,14 +233,14 @@ def _solid_m(wall: PlanWall, end_m: float) -> float:
 
 def _snap(ends_m: FloatArray, walls: Sequence[PlanWall]) -> FloatArray:
     """Return a line's ends (2, 2) moved onto the line of the wall nearest to both, if one is."""
-    way = ends_m[1] - ends_m[0]
+    span_m = ends_m[1] - ends_m[0]
     middle_m = ends_m.mean(axis=0)
-    least = math.cos(intersections.LEAST_RAD) * math.hypot(*way)
+    least = math.cos(intersections.LEAST_RAD) * math.hypot(*span_m)
     off_m, nearest_m = CORNER_M, ends_m
     for wall in walls:
         normal = wall.normal_at(middle_m)
         farthest_m = float(np.abs(wall.offset_m(ends_m)).max())
-        if farthest_m < off_m and abs(normal[1] * way[0] - normal[0] * way[1]) >= least:
+        if farthest_m < off_m and abs(normal[1] * span_m[0] - normal[0] * span_m[1]) >= least:
             off_m, nearest_m = farthest_m, wall.onto_line(ends_m)
     return nearest_m
 
@@ -257,9 +258,9 @@ def _choose_ways(ways_m: Sequence[FloatArray], solid: BaseGeometry) -> list[Floa
 
 def _make_parting(ends_m: FloatArray, kind: str = GAP) -> PlanWall:
     """Return a thin wall between two places, a little longer, that is open all along."""
-    way = ends_m[1] - ends_m[0]
-    half_m = math.hypot(*way) / 2
-    normal = np.array([-way[1], way[0]]) / (2 * half_m)
+    span_m = ends_m[1] - ends_m[0]
+    half_m = math.hypot(*span_m) / 2
+    normal = np.array([-span_m[1], span_m[0]]) / (2 * half_m)
     opening = Opening(-half_m, half_m, OPEN, 0, math.nan, math.nan, below_wall=False, kind=kind)
     line = Line(ends_m.mean(axis=0), normal)
     low_m, high_m = np.sort(line.along_m(ends_m))

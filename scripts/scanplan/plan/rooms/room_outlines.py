@@ -57,20 +57,20 @@ def find_rooms(
         The largest first; they do not overlap.
     """
     whole = free_space.union_on_grid(views) if floor is None else floor
-    seen = free_space.difference_on_grid(whole, bounds.solid)
+    open_floor = free_space.difference_on_grid(whole, bounds.solid)
     track = np.asarray(shapely.points(track_m), object)
-    way = bare_parts.draw_way(track_m, END_M)
+    driven = bare_parts.draw_way(track_m, END_M)
     facing = wall_ground.ground_before(bounds.walls, bounds.unpaired_m)
     mouths = bare_parts.MouthLimits(
         max_walled=1 - settings.min_walled, beside_m=2 * CORNER_M, step_m=END_M
     )
     found: list[tuple[Polygon, float, bool]] = []
     taken: BaseGeometry = bounds.solid
-    for part in _large_parts(seen, settings.min_area_m2):
+    for part in _large_parts(open_floor, settings.min_area_m2):
         drawn, outline = _draw_room(part, track, bounds, taken)
         polygons = [] if drawn is None else [drawn]
-        if drawn is not None and drawn.intersects(way):
-            polygons = bare_parts.cut_bare_parts(drawn, facing, way, mouths)
+        if drawn is not None and drawn.intersects(driven):
+            polygons = bare_parts.cut_bare_parts(drawn, facing, driven, mouths)
         for polygon in polygons:
             walled = bare_parts.walled_share(polygon.exterior, outline)
             shapely.prepare(polygon)

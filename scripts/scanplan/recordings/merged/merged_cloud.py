@@ -127,8 +127,8 @@ class MergedCloud(UntimedScans):
         """Return the points (n, 3) float32 at which rays from a place end, axes as the map's."""
         caster, xyz_m = self._surfaces
         from_m = self._places_m[scan_id]
-        seen = np.unique(caster.cast(from_m, _list_rays(), _REACH_M))
-        return (xyz_m[seen[seen >= 0]] - from_m).astype(np.float32), None
+        hit = np.unique(caster.cast(from_m, _list_rays(), _REACH_M))
+        return (xyz_m[hit[hit >= 0]] - from_m).astype(np.float32), None
 
     @cached_property
     def _surfaces(self) -> tuple[RayCaster, FloatArray]:
@@ -221,5 +221,5 @@ def _list_rays() -> FloatArray:
     azimuth = np.arange(_AZIMUTHS) * 2 * np.pi / _AZIMUTHS
     turn, rise = np.meshgrid(azimuth, np.radians(_ELEVATIONS_DEG), indexing="ij")
     level = np.cos(rise)
-    way = np.stack([level * np.cos(turn), level * np.sin(turn), np.sin(rise)], axis=-1)
-    return way.reshape(-1, 3)
+    direction = np.stack([level * np.cos(turn), level * np.sin(turn), np.sin(rise)], axis=-1)
+    return direction.reshape(-1, 3)

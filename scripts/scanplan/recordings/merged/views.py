@@ -33,28 +33,28 @@ class RayCaster:
         # of each block how many blocks away the nearest with points is, along any axis
         self._away = np.asarray(ndimage.distance_transform_cdt(is_empty, "chessboard"))
 
-    def cast(self, from_m: FloatArray, way: FloatArray, reach_m: float) -> IntArray:
+    def cast(self, from_m: FloatArray, direction: FloatArray, reach_m: float) -> IntArray:
         """Return the cube, its row among the keys, that each ray ends at; -1 for none.
 
         Parameters
         ----------
         from_m : (3,) float
             In metres from the cubes' origin, as the points are.
-        way : (n, 3) float
+        direction : (n, 3) float
             Unit vectors.
         """
         begin, reach = from_m / self._edge_m, reach_m / self._edge_m
-        ends = np.full(len(way), -1, np.int64)
-        rays, along = np.arange(len(way)), np.zeros(len(way))
+        ends = np.full(len(direction), -1, np.int64)
+        rays, along = np.arange(len(direction)), np.zeros(len(direction))
         while len(rays):
-            place = begin + way[rays] * along[:, None]
+            place = begin + direction[rays] * along[:, None]
             cell = np.floor(place).astype(np.int64)
             away = self._look_up(cell)
             is_near = away == 0
             row = self._find(cell[is_near])
             ends[rays[is_near]] = row
             size = np.where(is_near, 1, _BLOCK)[:, None]
-            step = _to_side(place, way[rays], size) + _PAST
+            step = _to_side(place, direction[rays], size) + _PAST
             along += np.maximum(step, (away - 1) * _BLOCK)
             goes_on = along < reach
             goes_on[is_near] &= row < 0
@@ -74,9 +74,9 @@ class RayCaster:
         return np.where(self._keys[row] == key, row, -1)
 
 
-def _to_side(place: FloatArray, way: FloatArray, size: IntArray) -> FloatArray:
+def _to_side(place: FloatArray, direction: FloatArray, size: IntArray) -> FloatArray:
     """Return how far rays (n,) go on to the side of the cube that they are in, of a size (n, 1)."""
-    side = (np.floor(place / size) + (way > 0)) * size
+    side = (np.floor(place / size) + (direction > 0)) * size
     with np.errstate(divide="ignore", invalid="ignore"):
-        step = np.where(way == 0, np.inf, (side - place) / way)
+        step = np.where(direction == 0, np.inf, (side - place) / direction)
     return step.min(axis=1)

@@ -156,10 +156,10 @@ def steady_way(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:
     steady = _steady_velocity(t_ns, world_from_base)
     moved = twists.twist_to_motion(steady * duration_s[:, None])
     # products of matrices drift off true rotations
-    way = itertools.accumulate(
+    poses = itertools.accumulate(
         [world_from_base[0], *moved], lambda pose, motion: se3.nearest_rigid(pose @ motion)
     )
-    return np.array(list(way))
+    return np.array(list(poses))
 
 
 def _steady_velocity(t_ns: IntArray, world_from_base: FloatArray) -> FloatArray:

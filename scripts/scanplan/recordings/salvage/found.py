@@ -77,15 +77,15 @@ class FoundRecords:
         self.messages: list[FoundMessage] = []
         self.stated: Counter[int] = Counter()
         self.is_checked = True
-        self.gaps: list[int] = []
+        self.breaks: list[int] = []
         self.last_part: Packed | None = None
         # chunks of one time lie side by side and are read alternately
         self._unpacked = lru_cache(maxsize=4)(self._unpack)
 
     def note_gap(self) -> None:
         """Note that the file is damaged behind the last message found."""
-        if self.gaps[-1:] != [len(self.messages)]:
-            self.gaps.append(len(self.messages))
+        if self.breaks[-1:] != [len(self.messages)]:
+            self.breaks.append(len(self.messages))
 
     def keep_listed(self, connection: int, listed: set[tuple[int, int]]) -> None:
         """Drop what the last part seems to hold of a connection, and its own index does not list.
@@ -111,7 +111,7 @@ class FoundRecords:
         ]
         if len(kept) < len(self.messages) - first:
             self.messages[first:] = kept
-            self.gaps = [min(gap, len(self.messages)) for gap in self.gaps]
+            self.breaks = [min(place, len(self.messages)) for place in self.breaks]
             self.note_gap()
 
     def unpack(self, part: Packed) -> bytes:

@@ -127,8 +127,8 @@ class SalvagedReader:
     def _list_spans(self, found: FoundRecords) -> list[tuple[str, str]]:
         """Return between which seconds of the recording each damage of a file lies, in words."""
         spans = []
-        for gap in found.gaps:
-            before, after = found.messages[:gap][-1:], found.messages[gap:][:1]
+        for place in found.breaks:
+            before, after = found.messages[:place][-1:], found.messages[place:][:1]
             first = f"from {self._time_in_words(before[0])}" if before else "from its beginning"
             last = self._time_in_words(after[0]) if after else _ITS_END
             spans.append((first, last))

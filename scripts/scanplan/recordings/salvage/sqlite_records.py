@@ -97,8 +97,8 @@ class _Pages:
         pairs = enumerate(zip([0, *numbers], numbers, strict=False))
         missing = [row for row, (before, number) in pairs if number != before + 1]
         # what no number tells of may lie behind them all
-        at_end = [len(numbers)] if self._found.gaps else []
-        self._found.gaps = missing + at_end
+        at_end = [len(numbers)] if self._found.breaks else []
+        self._found.breaks = missing + at_end
 
     def _take_page(self, page: int) -> None:
         """Take the rows of a page; one that is no leaf of a table has none."""

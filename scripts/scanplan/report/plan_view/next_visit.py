@@ -98,8 +98,8 @@ def _questions(questions: Columns) -> Iterator[str]:
 
 
 def _ways(standpoints: Columns) -> Iterator[str]:
-    for way in shapely.from_wkb(standpoints["geometry"]):
-        yield plan_svg.draw_path(shapely.get_coordinates(way)[None], 'class="way"')
+    for track in shapely.from_wkb(standpoints["geometry"]):
+        yield plan_svg.draw_path(shapely.get_coordinates(track)[None], 'class="way"')
 
 
 def _standpoints(standpoints: Columns) -> Iterator[str]:

@@ -184,9 +184,9 @@ def _cut(
     edge = np.repeat(long, n_pieces)
     line = low[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(n_pieces) - n_pieces, n_pieces)
     a, b = start[edge], end[edge]
-    way = (b - a) / (b - a)[:, axis, None]
+    step = (b - a) / (b - a)[:, axis, None]
     cut_a, cut_b = (
-        a + (np.clip(p[:, axis], line, line + 1) - a[:, axis])[:, None] * way for p in (a, b)
+        a + (np.clip(p[:, axis], line, line + 1) - a[:, axis])[:, None] * step for p in (a, b)
     )
     whole = low == high
     return (

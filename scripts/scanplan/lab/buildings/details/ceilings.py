@@ -54,8 +54,10 @@ def ceiling_range(
             for other_row, (other, other_plane) in enumerate(surfaces)
             if other_row != row
         ]
-        seen = overlays.subtract_areas(area, overlays.unite_areas(lower))
-        wide = [p for p in shapely.get_parts(seen) if not overlays.buffer_shapes(p, -0.01).is_empty]
+        open_area = overlays.subtract_areas(area, overlays.unite_areas(lower))
+        wide = [
+            p for p in shapely.get_parts(open_area) if not overlays.buffer_shapes(p, -0.01).is_empty
+        ]
         heights_m += [plane.heights(shapely.get_coordinates(part)) for part in wide]
     if not heights_m:
         return main_m, main_m

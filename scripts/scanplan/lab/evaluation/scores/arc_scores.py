@@ -56,9 +56,9 @@ def score_arcs(plan: DrawnPlan, scene: Scene, sight: Sight) -> Score:
         if seen_m.sum() < _LEAST_SEEN_M:
             continue
         n_true += 1
-        seen = overlays.unite_lines(faces[seen_m > 0])
-        along_m = {of: overlays.intersect_lines(seen, strips[of]).length for of in axes}
-        if along_m and 2 * sum(along_m.values()) >= seen.length:
+        seen_faces = overlays.unite_lines(faces[seen_m > 0])
+        along_m = {of: overlays.intersect_lines(seen_faces, strips[of]).length for of in axes}
+        if along_m and 2 * sum(along_m.values()) >= seen_faces.length:
             best = max(along_m, key=lambda of: along_m[of])
             row = int(np.flatnonzero(plan.wall == best)[0])
             half_m = np.nan_to_num(plan.thickness_m[row]) / 2
@@ -112,16 +112,16 @@ def _fit_curve(faces_m: FloatArray, rows: IntArray) -> _TrueCurve | None:
     Jambs and reveals, which point at the centre, are left out.
     """
     middle_m = faces_m[rows].mean(axis=1)
-    way = unit_directions(faces_m[rows])
+    direction = unit_directions(faces_m[rows])
     centre_m = _guess_centre(middle_m)
     is_chord = np.ones(len(rows), bool)
     for _ in range(_ROUNDS):
         outward_m = middle_m - centre_m
-        is_chord = 2 * np.abs(np.sum(way * outward_m, axis=1)) < np.hypot(*outward_m.T)
+        is_chord = 2 * np.abs(np.sum(direction * outward_m, axis=1)) < np.hypot(*outward_m.T)
         if is_chord.sum() < _LEAST_FACES:
             return None
-        along_m = np.sum(way * middle_m, axis=1)
-        centre_m = np.linalg.lstsq(way[is_chord], along_m[is_chord], rcond=None)[0]
+        along_m = np.sum(direction * middle_m, axis=1)
+        centre_m = np.linalg.lstsq(direction[is_chord], along_m[is_chord], rcond=None)[0]
     radii_m = np.hypot(*(middle_m - centre_m).T)
     return _TrueCurve(centre_m, rows[is_chord], radii_m[is_chord])
 

@@ -44,7 +44,7 @@ def attribute_cells(scene: Scene, cells: FaceCells) -> IntArray:
     """
     kind = np.full(len(cells.face), KINDS.index("other"))
     points = np.asarray(shapely.points(cells.middle_m), object)
-    way = unit_directions(cells.faces_m)[cells.face]
+    direction = unit_directions(cells.faces_m)[cells.face]
     right = np.zeros(len(kind), bool)
     _, begins, ends = wall_findings.find_cells(cells, scene.surfaces_m, WITHIN_M)
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
@@ -60,7 +60,7 @@ def attribute_cells(scene: Scene, cells: FaceCells) -> IntArray:
         ("shut_door", _is_shut_door),
         ("leaf", _is_leaf),
     ):
-        found = test(scene, points[left], cells.middle_m[left], way[left])
+        found = test(scene, points[left], cells.middle_m[left], direction[left])
         kind[left[found]] = KINDS.index(name)
     return kind
 
@@ -84,7 +84,7 @@ def judge_lines(cells: FaceCells, kind: IntArray, right_share: float) -> tuple[A
     return np.array(KINDS, object)[rows], share
 
 
-def _is_leaf(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
+def _is_leaf(scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray) -> BoolArray:
     leaves = scene.leaves
     stands = ~leaves.shut
     bodies = overlays.buffer_shapes(
@@ -95,43 +95,51 @@ def _is_leaf(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray)
     return _is_in(points, bodies)
 
 
-def _is_shut_door(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
-    return _is_across(scene, points, way, scene.openings.shut)
+def _is_shut_door(
+    scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray
+) -> BoolArray:
+    return _is_across(scene, points, direction, scene.openings.shut)
 
 
-def _is_bridge(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
+def _is_bridge(
+    scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray
+) -> BoolArray:
     openings = scene.openings
     is_open = openings.is_door | (np.nan_to_num(openings.sill_m) < PARAPET_M)
-    return _is_across(scene, points, way, is_open & ~openings.shut)
+    return _is_across(scene, points, direction, is_open & ~openings.shut)
 
 
-def _is_across(scene: Scene, points: Array, way: FloatArray, chosen: BoolArray) -> BoolArray:
+def _is_across(scene: Scene, points: Array, direction: FloatArray, chosen: BoolArray) -> BoolArray:
     """Return which points (n,) of lines along them lie in chosen openings of walls."""
     grounds = scene.openings.footprints(WITHIN_M)[chosen]
     along = unit_directions(scene.openings.lines_m)[chosen]
     point, ground = shapely.STRtree(grounds).query(points, predicate="intersects")
-    is_along = np.abs(np.einsum("ij,ij->i", way[point], along[ground])) >= _ACROSS
+    is_along = np.abs(np.einsum("ij,ij->i", direction[point], along[ground])) >= _ACROSS
     found = np.zeros(len(points), bool)
     found[point[is_along]] = True
     return found
 
 
-def _is_furniture(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
+def _is_furniture(
+    scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray
+) -> BoolArray:
     shapes = [*scene.furniture, *line_shapes_of(scene.screens_m)]
     return _is_in(points, overlays.buffer_shapes(np.array(shapes, object), WITHIN_M, quad_segs=8))
 
 
-def _is_off(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
+def _is_off(scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray) -> BoolArray:
     surfaces = line_shapes_of(scene.surfaces_m)
     along = unit_directions(scene.surfaces_m)
     point, surface = shapely.STRtree(surfaces).query(points, predicate="dwithin", distance=OFF_M)
-    is_along = np.abs(np.einsum("ij,ij->i", way[point], along[surface])) >= _PARALLEL
+    is_along = np.abs(np.einsum("ij,ij->i", direction[point], along[surface])) >= _PARALLEL
     found = np.zeros(len(points), bool)
     found[point[is_along]] = True
     return found
 
 
-def _is_mirrored(scene: Scene, points: Array, middle_m: FloatArray, way: FloatArray) -> BoolArray:
+def _is_mirrored(
+    scene: Scene, points: Array, middle_m: FloatArray, direction: FloatArray
+) -> BoolArray:
     found = np.zeros(len(points), bool)
     if len(scene.rooms):
         shapely.prepare(scene.ground)

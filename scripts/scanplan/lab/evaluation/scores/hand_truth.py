@@ -44,9 +44,9 @@ def read_hand_scene(path: FilePath) -> Scene:
     """
     parts = read_parts(path)
     drawn_openings = parts.get("opening", [])
-    gaps = overlays.unite_shapes([g for k in ("opening", "unseen") for _, g in parts.get(k, [])])
+    cuts = overlays.unite_shapes([g for k in ("opening", "unseen") for _, g in parts.get(k, [])])
     surfaces = [
-        overlays.subtract_lines(g, overlays.buffer_shapes(gaps, _GAP_M))
+        overlays.subtract_lines(g, overlays.buffer_shapes(cuts, _GAP_M))
         for _, g in parts.get("surface", [])
     ]
     runs_m = [outline_sides_m(part) for g in surfaces for part in shapely.get_parts(g)]

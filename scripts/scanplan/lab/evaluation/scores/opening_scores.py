@@ -107,12 +107,12 @@ def pair_openings(plan: DrawnPlan, scene: Scene) -> Pairs:
     much the same way.
     """
     true, is_drawn = scene.openings, plan.type != NOT_DRAWN
-    way = unit_directions(true.lines_m)
-    across = np.stack([-way[:, 1], way[:, 0]], axis=1)
+    direction = unit_directions(true.lines_m)
+    across = np.stack([-direction[:, 1], direction[:, 0]], axis=1)
     offset_m = plan.openings_m.mean(axis=1)[:, None] - true.lines_m.mean(axis=1)[None]
-    along_m = np.abs(np.einsum("otk,tk->ot", offset_m, way))
+    along_m = np.abs(np.einsum("otk,tk->ot", offset_m, direction))
     deep_m = np.abs(np.einsum("otk,tk->ot", offset_m, across))
-    alike = np.abs(unit_directions(plan.openings_m) @ way.T) >= PARALLEL
+    alike = np.abs(unit_directions(plan.openings_m) @ direction.T) >= PARALLEL
     reach_m = np.maximum(scene.opening_m, line_lengths_m(true.lines_m) / 3)
     in_wall = deep_m <= np.maximum(scene.opening_m, true.thickness_m / 2 + _ACROSS_M)
     drawn, other = np.nonzero((along_m <= reach_m) & in_wall & alike & is_drawn[:, None])
@@ -203,15 +203,15 @@ def _could_be_seen(scene: Scene, sight: Sight) -> BoolArray:
     cells, openings = sight.cells, scene.openings
     along = unit_directions(cells.faces_m)[cells.face] if len(cells.face) else np.empty((0, 2))
     seen = np.zeros(len(openings.type), bool)
-    ways = unit_directions(openings.lines_m)
-    for row, (line_m, way) in enumerate(zip(openings.lines_m, ways, strict=True)):
+    directions = unit_directions(openings.lines_m)
+    for row, (line_m, direction) in enumerate(zip(openings.lines_m, directions, strict=True)):
         offset_m = cells.middle_m - line_m.mean(axis=0)
         reach_m = np.hypot(*(line_m[1] - line_m[0])) / 2 + _BESIDE_M
         deep_m = max(WALL_M, openings.thickness_m[row] / 2 + _ACROSS_M)
-        across_m = np.abs(offset_m @ np.array([-way[1], way[0]]))
-        is_near = (np.abs(offset_m @ way) <= reach_m) & (across_m <= deep_m)
-        beside = is_near & (np.abs(along @ way) >= PARALLEL)
-        for side in (beside & (along @ way > 0), beside & (along @ way < 0)):
+        across_m = np.abs(offset_m @ np.array([-direction[1], direction[0]]))
+        is_near = (np.abs(offset_m @ direction) <= reach_m) & (across_m <= deep_m)
+        beside = is_near & (np.abs(along @ direction) >= PARALLEL)
+        for side in (beside & (along @ direction > 0), beside & (along @ direction < 0)):
             visible_m = cells.length_m[side & sight.visible].sum()
             seen[row] |= side.any() and 2 * visible_m >= cells.length_m[side].sum()
     return seen

@@ -25,7 +25,7 @@ def score_plan(
     drawn: Mapping[str, Columns],
     motion: FloatArray,
     truth: Scene,
-    seen: sight.Sight | None = None,
+    known_sight: sight.Sight | None = None,
     *,
     confidence: Columns | None = None,
     height_m: float = np.nan,
@@ -38,7 +38,7 @@ def score_plan(
         The plan's tables, see `drawn_plan.place_plan`.
     motion : (4, 4) float
         Level rigid motion from the plan's frame to the truth's.
-    seen : sight.Sight, optional
+    known_sight : sight.Sight, optional
         What the survey could see; by default all.
     confidence : dict of str to (n,) array, optional
         As of `schemas.CONFIDENCE`.
@@ -53,7 +53,7 @@ def score_plan(
         of a floor those alone that do not ask what is false.
     """
     plan = drawn_plan.place_plan(drawn, motion, confidence, height_m)
-    known = sight.see_all(truth) if seen is None else seen
+    known = sight.see_all(truth) if known_sight is None else known_sight
     scores = [
         wall_scores.score_walls(plan, truth, known),
         opening_scores.score_openings(plan, truth, known),

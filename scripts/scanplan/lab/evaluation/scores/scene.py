@@ -225,6 +225,8 @@ def outline_sides_m(shape: BaseGeometry) -> FloatArray:
 
 def _both_sides_m(lines_m: FloatArray, thickness_m: FloatArray) -> list[FloatArray]:
     """Return lines moved to either side by half of a thickness (n, 2) at their ends."""
-    way = unit_directions(lines_m)
-    across_m = np.stack([-way[:, 1], way[:, 0]], axis=1)[:, None] * thickness_m[..., None] / 2
+    direction = unit_directions(lines_m)
+    across_m = (
+        np.stack([-direction[:, 1], direction[:, 0]], axis=1)[:, None] * thickness_m[..., None] / 2
+    )
     return [lines_m + across_m, lines_m - across_m]

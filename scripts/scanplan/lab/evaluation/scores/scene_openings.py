@@ -50,18 +50,18 @@ def read_leaves(
 
 def _stands_in(line_m: FloatArray, opening_m: FloatArray) -> bool:
     """Return whether a leaf stands along its opening, and within its width for the most part."""
-    way, across = _axes(opening_m[[0, -1]])
+    direction, across = _axes(opening_m[[0, -1]])
     leaf_m = line_m[1] - line_m[0]
     is_along = abs(leaf_m @ across) <= np.hypot(*leaf_m) * np.sin(np.radians(_ALONG_DEG))
-    low_m, high_m = np.sort((line_m - opening_m[0]) @ way)
+    low_m, high_m = np.sort((line_m - opening_m[0]) @ direction)
     width_m = np.hypot(*(opening_m[-1] - opening_m[0]))
     inside_m = min(high_m, width_m) - max(low_m, 0.0)
     return bool(is_along and inside_m >= _SHUT_SHARE * np.hypot(*leaf_m))
 
 
 def _axes(line_m: FloatArray) -> tuple[FloatArray, FloatArray]:
-    way = (line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0]))
-    return way, np.array([-way[1], way[0]])
+    direction = (line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0]))
+    return direction, np.array([-direction[1], direction[0]])
 
 
 def read_openings(
@@ -92,7 +92,7 @@ def read_openings(
     host_m = _host_thickness_m(lines_m, walls_m, thickness_m)
     lines = line_shapes_of(lines_m)
     apart_m = shapely.distance(lines, overlays.unite_areas(entered))
-    way = shapely.LineString(track_m) if len(track_m) > 1 else shapely.Point()
+    track = shapely.LineString(track_m) if len(track_m) > 1 else shapely.Point()
     is_door = np.array([v.get("type") != "window" for v in values], bool)
     return TrueOpenings(
         lines_m=lines_m,
@@ -103,7 +103,7 @@ def read_openings(
         glazed=np.array([bool(v.get("glazed", False)) for v in values], bool),
         # without rooms nothing is known to be entered, and no distance is a number
         entered=np.nan_to_num(apart_m, nan=np.inf) <= host_m / 2 + BESIDE_M,
-        driven=is_door & shapely.intersects(lines, way),
+        driven=is_door & shapely.intersects(lines, track),
         shut=is_door & _find_shut(lines_m, host_m, closing_m),
     )
 
@@ -129,11 +129,11 @@ def _find_shut(lines_m: FloatArray, thickness_m: FloatArray, closing_m: FloatArr
     """Return which openings (n,) lines that stand in their walls close for the most part."""
     shut = np.zeros(len(lines_m), bool)
     for row, (line_m, thick_m) in enumerate(zip(lines_m, thickness_m, strict=True)):
-        way, across = _axes(line_m)
+        direction, across = _axes(line_m)
         width_m = np.hypot(*(line_m[1] - line_m[0]))
         offset_m = closing_m - line_m[0]
         in_wall = (np.abs(offset_m @ across) <= thick_m / 2 + _SLACK_M).all(axis=1)
-        along_m = np.clip(np.sort(offset_m[in_wall] @ way, axis=1), 0.0, width_m)
+        along_m = np.clip(np.sort(offset_m[in_wall] @ direction, axis=1), 0.0, width_m)
         spans = shapely.linestrings(
             np.stack([along_m, np.zeros_like(along_m)], axis=-1).reshape(-1, 2, 2)
         )

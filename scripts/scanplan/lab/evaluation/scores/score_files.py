@@ -45,14 +45,14 @@ class Placed:
     folder : Path
         results/<dataset>.
     scene : scene.Scene
-    seen : sight.Sight
+    known_sight : sight.Sight
     motion : (4, 4) float64
         Level rigid motion from the map to the frame of the truth.
     """
 
     folder: Path
     scene: Scene
-    seen: sight.Sight
+    known_sight: sight.Sight
     motion: FloatArray
 
 
@@ -152,7 +152,7 @@ def score_results(placed: Placed) -> Score:
         drawn,
         placed.motion,
         placed.scene,
-        placed.seen,
+        placed.known_sight,
         confidence=read_columns(placed.folder / "plan/confidence.parquet"),
         height_m=ceiling_z_m - floor_z_m,
     )
@@ -177,7 +177,7 @@ def score_peer_rooms(placed: Placed, rooms: Sequence[BaseGeometry]) -> Score:
 def score_peer_lines(placed: Placed, lines_m: FloatArray) -> Score:
     """Score lines (n, 2, 2) of another method, in the map of the results, as faces of a plan."""
     moved_m = transform_lines(lines_m, placed.motion)
-    return wall_scores.score_lines(moved_m, placed.scene, placed.seen)
+    return wall_scores.score_lines(moved_m, placed.scene, placed.known_sight)
 
 
 def read_plan(folder: FilePath) -> dict[str, dict[str, Array]]:

@@ -95,11 +95,11 @@ def observe_scene(
 def _pieces(scene: Scene) -> tuple[FloatArray, IntArray]:
     """Return lines just before the sides of leaves, then of columns, and whose each is."""
     leaves = scene.leaves
-    way = unit_directions(leaves.lines_m)
-    across = np.stack([-way[:, 1], way[:, 0]], axis=1)[:, None]
+    direction = unit_directions(leaves.lines_m)
+    across = np.stack([-direction[:, 1], direction[:, 0]], axis=1)[:, None]
     half_m = (leaves.thickness_m / 2 + _PROUD_M)[:, None, None]
     # a little shorter, so that none crosses the jamb that it hangs at
-    inset_m = way[:, None] * np.array([1, -1])[:, None] * 2 * _PROUD_M
+    inset_m = direction[:, None] * np.array([1, -1])[:, None] * 2 * _PROUD_M
     middles_m = leaves.lines_m + inset_m
     n_leaves = len(leaves.lines_m)
     sides: list[FloatArray] = [middles_m + across * half_m, middles_m - across * half_m]

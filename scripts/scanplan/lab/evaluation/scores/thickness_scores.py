@@ -31,11 +31,11 @@ def score_thickness(plan: DrawnPlan, scene: Scene) -> Score:
         flagged; `thickness_error_m`, the median. Elements are runs of stretches that are off.
     """
     wall, middle_m, length_m = cut_walls(plan.walls_m, np.isfinite(plan.thickness_m))
-    way = unit_directions(plan.walls_m)[wall]
-    true_m = find_thickness(middle_m, way, scene)
+    direction = unit_directions(plan.walls_m)[wall]
+    true_m = find_thickness(middle_m, direction, scene)
     known = np.isfinite(true_m)
     wall, middle_m, length_m = wall[known], middle_m[known], length_m[known]
-    true_m, way = true_m[known], way[known]
+    true_m, direction = true_m[known], direction[known]
     error_m = np.abs(plan.thickness_m[wall] - true_m)
     off = error_m > _OFF_M
     rating = plan.rating("walls")
@@ -50,7 +50,7 @@ def score_thickness(plan: DrawnPlan, scene: Scene) -> Score:
     rows = []
     for number in np.unique(wall[off]).tolist():
         own = off & (wall == number)
-        half_m = way[own] * length_m[own, None] / 2
+        half_m = direction[own] * length_m[own, None] / 2
         runs = shapely.linestrings(np.stack([middle_m[own] - half_m, middle_m[own] + half_m], 1))
         rows.append(
             Element(
@@ -79,7 +79,7 @@ def cut_walls(lines_m: FloatArray, chosen: Array) -> tuple[Array, FloatArray, Fl
     return wall, middle_m, np.repeat(whole_m / np.maximum(count, 1), count)
 
 
-def find_thickness(places_m: FloatArray, way: FloatArray, scene: Scene) -> FloatArray:
+def find_thickness(places_m: FloatArray, direction: FloatArray, scene: Scene) -> FloatArray:
     """Return how thick (s,) the wall at each place is that runs the way (s, 2) given.
 
     NaN where none is: within 0.1 m of its body. The nearest middle of those that are.
@@ -89,7 +89,7 @@ def find_thickness(places_m: FloatArray, way: FloatArray, scene: Scene) -> Float
     points = np.asarray(shapely.points(places_m), object).reshape(-1)
     true, place = shapely.STRtree(points).query(lines, predicate="dwithin", distance=half_m)
     true_way = unit_directions(scene.walls_m)[true]
-    alike = np.abs(np.einsum("ij,ij->i", way[place], true_way)) >= PARALLEL
+    alike = np.abs(np.einsum("ij,ij->i", direction[place], true_way)) >= PARALLEL
     true, place = true[alike], place[alike]
     apart_m = shapely.distance(lines[true], points[place])
     found_m = np.full(len(places_m), np.nan)
