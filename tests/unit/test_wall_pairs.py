@@ -113,3 +113,40 @@ def test_every_stretch_is_in_one_wall_and_every_side_is_straight(seed):
                 off = wall.line.offset_m(face.ends) - sign * wall.half_m
                 assert np.abs(off).max() <= SETTINGS.offset_m + 1e-9
         assert math.isnan(wall.thickness_m) or 0.04 <= wall.thickness_m <= 0.6
+
+
+def shown(x0, x1, low_m, high_m):
+    """Return places along, height, of rays at a surface, 5 cm apart."""
+    return [(x, z) for x in np.arange(x0, x1, 0.05) for z in np.arange(low_m, high_m, 0.05)]
+
+
+def cupboard_front(over, over_m=(1.8, 2.4)):
+    """Return the front of cupboards 4 m long, 1.8 m high, which rays pass over on some length."""
+    passed = [place for place in shown(0, over, *over_m) for _ in range(3)]
+    seen = shown(0.025, 4, 0.025, 1.8)
+    return observation_making.stretch(4, -0.4, 0, -0.4, occupied=seen, free=passed)
+
+
+WALL_SIDE = observation_making.stretch(0, 0.1, 4, 0.1, occupied=shown(0.025, 4, 0.025, 2.6))
+
+
+@pytest.mark.parametrize(
+    ("front", "n_walls"),
+    [
+        pytest.param(cupboard_front(4.0), 2, id="rays go over all of it"),
+        pytest.param(cupboard_front(0.8), 1, id="over a fifth of it, as above a sill"),
+        pytest.param(cupboard_front(0.0), 1, id="over none of it"),
+        pytest.param(cupboard_front(4.0, (1.8, 1.99)), 1, id="no higher over it than noise"),
+    ],
+)
+def test_what_rays_pass_over_to_a_wall_is_no_side_of_it(front, n_walls):
+    assert len(pair(WALL_SIDE, front)) == n_walls
+
+
+def test_what_is_open_on_both_sides_at_one_height_is_a_wall_with_a_hole():
+    def with_window(*ends):
+        solid = [place for place in shown(0.025, 4, 0.025, 2.6) if not 0.9 < place[1] < 2.1]
+        through = [place for place in shown(0.025, 4, 0.9, 2.1) for _ in range(3)]
+        return observation_making.stretch(*ends, occupied=solid, free=through)
+
+    assert len(pair(with_window(0, 0.1, 4, 0.1), with_window(4, -0.1, 0, -0.1))) == 1

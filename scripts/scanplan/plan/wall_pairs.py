@@ -12,7 +12,7 @@ from scanplan.geometry.tolerances import ROUNDING
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M
-from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.face_raster import CELL_M, ROW_M
 from scanplan.rays.tolerances import STRETCH_M
 from scanplan.types import FloatArray
 
@@ -126,6 +126,8 @@ def _overlap(one: FaceInterval, other: FaceInterval) -> tuple[float, float]:
 def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) -> bool:
     """Return whether rays go through one side where the other was seen and it was not."""
     for shown, unseen in ((one, other), (other, one)):
+        if _share_passed(unseen, shown) > _OPEN_SHARE:
+            return True
         raster = unseen.observation.raster
         is_opened = raster.is_opened(door_height_m)
         first_m, last_m = np.sort(unseen.line.along_m(shown.ends)).tolist()
@@ -139,6 +141,19 @@ def _contradict(one: FaceInterval, other: FaceInterval, door_height_m: float) ->
         if open_m > max(STRETCH_M, _OPEN_SHARE * unseen_m):
             return True
     return False
+
+
+def _share_passed(low: FaceInterval, high: FaceInterval) -> float:
+    """Return how much of what two sides have in common rays pass above one, where the other is.
+
+    Such a side stands before the wall.
+    """
+    of_low, of_high = low.observation.raster, high.observation.raster
+    first_m, last_m = np.sort(low.line.along_m(high.ends)).tolist()
+    columns = of_low.between(max(first_m, low.low_m), min(last_m, low.high_m))
+    along_m = high.line.along_m(low.line.at(of_low.middle_m[columns]))
+    is_passed = of_low.passed_cells[columns] & of_high.seen_cells[of_high.column_of(along_m)]
+    return float((is_passed.sum(axis=1) * ROW_M >= STRETCH_M).mean()) if len(along_m) else 0.0
 
 
 class _Sides:

@@ -18,6 +18,9 @@ CELL_M = 0.05  # edge of a cell of all scans together: a few times the noise of 
 SCAN_COLUMN_M = 0.1  # column of a single scan: wider than what is between its rays
 
 
+ROW_M = 0.2
+"""Of height, where rows hold several beams."""
+_N_ROWS = 20  # up to 4 m
 Places = tuple[FloatArray, FloatArray]
 """Where rays are at a surface, (n,) float64 each: along its line, and above the floor."""
 
@@ -115,6 +118,29 @@ class FaceRaster:
     def is_solid(self, below_m: float) -> BoolArray:
         """Return the columns (c,) occupied below a height and not opened."""
         return (self.count_occupied(below_m) > 0) & ~self.is_opened(below_m)
+
+    @cached_property
+    def seen_cells(self) -> BoolArray:
+        """Which cells (c, r) of 0.2 m of height more rays end in than go through."""
+        occupied, free = self._counts
+        return occupied > free
+
+    @cached_property
+    def passed_cells(self) -> BoolArray:
+        """Which cells (c, r) of 0.2 m of height more rays go through than end in, and not few."""
+        occupied, free = self._counts
+        return (free > occupied) & (free >= FEW)
+
+    @cached_property
+    def _counts(self) -> tuple[IntArray, IntArray]:
+        n_rows = 1 if self.planar else _N_ROWS
+        shape = (self.n_columns, n_rows)
+        counts = []
+        for cells in (self.occupied, self.free):
+            row = np.minimum(cells.row // round(ROW_M / CELL_M), n_rows - 1)
+            number = np.ravel_multi_index((cells.column, row), shape)
+            counts.append(np.bincount(number, minlength=shape[0] * n_rows).reshape(shape))
+        return counts[0], counts[1]
 
     @cached_property
     def _n_occupied(self) -> dict[int, IntArray]:
