@@ -79,15 +79,16 @@ def assemble_plan(
     wait_for_rays = workers.begin_in_thread(
         _read_rays, rays, settings["openings"]["min_opening_m"], threads=threads
     )
-    others = planning.OtherScans()
+    find_floor = None
     if store.planar:
         retained = store.scans(registered.scan_ids)
-        others = planning.OtherScans(
-            workers.begin_in_thread(
-                free_space.find_seen_floor, retained, sensors_m, threads=threads
-            ),
-            functools.partial(fronts.gather_dense_rays, store.scans, sensors_m, threads=threads),
+        find_floor = workers.begin_in_thread(
+            free_space.find_seen_floor, retained, sensors_m, threads=threads
         )
+    find_rays = functools.partial(
+        fronts.gather_dense_rays, store.scans, registered, planar=store.planar, threads=threads
+    )
+    others = planning.OtherScans(find_floor, find_rays)
     limits = planning.make_plan_settings(settings)
     chosen = planning.ChosenScans.of_registered(segments, rays, registered, rows)
     # sums that a library shares out among cores differ in their last digits

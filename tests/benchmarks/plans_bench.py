@@ -204,13 +204,15 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
     sensors_m = dict(zip(found.registered.scan_ids.tolist(), poses[:, :3, 3], strict=True))
     rays = ray_set.gather_rays(found.store.scans(scan_ids), sensors_m, planar=found.store.planar)
     used = np.isin(found.walls["scan_id"], scan_ids)
-    others = planning.OtherScans()
+    find_floor = None
     if found.store.planar:
         retained = found.store.scans(found.registered.scan_ids)
-        others = planning.OtherScans(
-            functools.partial(free_space.find_seen_floor, retained, sensors_m),
-            functools.partial(fronts.gather_dense_rays, found.store.scans, sensors_m),
-        )
+        find_floor = functools.partial(free_space.find_seen_floor, retained, sensors_m)
+    find_rays = functools.partial(
+        *(fronts.gather_dense_rays, found.store.scans, found.registered),
+        planar=found.store.planar,
+    )
+    others = planning.OtherScans(find_floor, find_rays)
     segments = {column: values[used] for column, values in found.walls.items()}
     plan = planning.make_plan(
         planning.ChosenScans.of_registered(segments, rays, found.registered, rows),

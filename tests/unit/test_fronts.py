@@ -6,12 +6,14 @@ The front runs at y = 3 from wall to wall, posts every 2 m, a door from 4.6 to 5
 import numpy as np
 import pytest
 import shapely
+from scipy.spatial.transform import Rotation
 
 from scanplan.geometry.lines import Line
 from scanplan.plan.model import fronts
 from scanplan.plan.model.front_rows import find_front_rows
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays import ray_set
+from scanplan.store.registered_scans import RegisteredScans
 
 LENGTH_M, DEPTH_M, FRONT_M = 8.0, 6.0, 3.0
 DOOR_M = (4.6, 5.5)
@@ -113,4 +115,25 @@ def test_answers_of_walls_are_no_rows():
 
 def test_one_scan_of_each_place_is_enough():
     sensors_m = np.array([(0.1, 0.1), (0.12, 0.1), (1.1, 0.1), (0.1, 0.11), (1.1, 0.9)])
-    assert fronts.choose_scans(sensors_m).tolist() == [0, 2, 4]
+    assert fronts.choose_scans(sensors_m, planar=True).tolist() == [0, 2, 4]
+
+
+def test_in_space_a_scan_of_each_place_gives_the_beams_that_may_come_square():
+    """Of three scans the second is 0.3 m beside the first; the third looks 5 degrees askew."""
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[:, :3, 3] = [(0.1, 0.1, 1), (0.4, 0.1, 1), (1.1, 0.1, 1)]
+    poses[2, :3, :3] = Rotation.from_euler("x", 5, degrees=True).as_matrix()
+    known = RegisteredScans(np.arange(3), np.arange(3), poses, np.full((3, 3, 3), np.nan))
+    up_m = 5 * np.tan(np.radians([-30, -9, 0, 9, 30]))
+
+    def read_scans(scan_ids):
+        for number in scan_ids.tolist():
+            yield number, poses[number, :3, 3] + np.column_stack([0 * up_m + 5, 0 * up_m, up_m])
+
+    rays, up = fronts.gather_dense_rays(read_scans, known, planar=False)
+    assert rays.scan_ids.tolist() == [0, 2]
+    assert np.diff(rays.first).tolist() == [3, 3]
+    np.testing.assert_allclose(up @ [0, 0, 1], np.cos(np.radians([0, 5])))
+    flat, _ = fronts.gather_dense_rays(read_scans, known, planar=True)
+    assert flat.scan_ids.tolist() == [0, 1, 2]
+    assert len(flat.xyz_m) == 15

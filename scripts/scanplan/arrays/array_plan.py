@@ -275,7 +275,8 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
     find_dense = partial(
         fronts.gather_dense_rays,
         placed.scans,
-        placed.sensors_m,
+        placed.known,
+        planar=placed.planar,
         left_out=placed.left_out,
         threads=threads,
     )
@@ -283,9 +284,7 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
         planning.ChosenScans.of_registered(found, rays, placed.known, rows),
         placed.known.map_from_sensor[:, :2, 3],
         planning.make_plan_settings(stage_settings.select_plan(placed.settings)),
-        others=planning.OtherScans(
-            find_seen if flat.planar else None, find_dense if placed.planar else None
-        ),
+        others=planning.OtherScans(find_seen if flat.planar else None, find_dense),
         threads=threads,
     )
     messages.check_plan(_ORIGIN, plan, n_segments, len(rows))

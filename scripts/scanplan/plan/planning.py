@@ -126,20 +126,20 @@ class ChosenScans:
 
 @dataclass(frozen=True)
 class OtherScans:
-    """What planar scans saw that were not chosen, too.
+    """What scans saw that were not chosen, too.
 
     Attributes
     ----------
     find_floor : callable, optional
-        Returns the floor that all saw: rooms are made of it. By default it is what the chosen ones
-        saw.
+        Returns the floor that all planar ones saw: rooms are made of it. By default it is what the
+        chosen ones saw.
     find_rays : callable, optional
-        Returns rays from all along the way, see `fronts.gather_dense_rays`: panes are found by
-        them. By default they are the chosen ones'.
+        Returns rays from all along the way, and the axes of their sensors, see
+        `fronts.gather_dense_rays`: panes are found by them. By default they are the chosen ones'.
     """
 
     find_floor: Callable[[], BaseGeometry] | None = None
-    find_rays: Callable[[], RaySet] | None = None
+    find_rays: Callable[[], tuple[RaySet, FloatArray]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,12 +237,16 @@ def make_plan(
         openings.max_door_m,
         threads=threads,
     )
-    dense = rays
-    if others.find_rays is not None:
-        dense = others.find_rays()
-        dense = range_bias.remove_range_bias(dense, errors_m, _stand_plumb(dense), threads)
+
+    def find_dense() -> RaySet:
+        if others.find_rays is None:
+            return rays
+        dense, up = others.find_rays()
+        dense = range_bias.remove_range_bias(dense, errors_m, up, threads)
+        return replace(dense, floor_z_m=rays.floor_z_m, is_level=np.abs(up[:, 2]) >= _LEVEL)
+
     survey = _Survey(
-        settings, rays, dense, track_m, find_free, others.find_floor, designed, threads
+        settings, rays, find_dense, track_m, find_free, others.find_floor, designed, threads
     )
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
@@ -341,8 +345,10 @@ class _Survey:
     Attributes
     ----------
     settings : PlanSettings
-    rays, dense : ray_set.RaySet
-        Of the chosen scans, and those that panes are found by, their ranges set right.
+    rays : ray_set.RaySet
+        Of the chosen scans, their ranges set right.
+    find_dense : callable
+        Returns those that panes are found by, likewise: they are not kept, as they are many.
     track_m : (k, 2) float64
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
@@ -354,7 +360,7 @@ class _Survey:
 
     settings: PlanSettings
     rays: RaySet
-    dense: RaySet
+    find_dense: Callable[[], RaySet]
     track_m: FloatArray
     find_free: Callable[[], _Free]
     find_seen: Callable[[], BaseGeometry] | None
@@ -395,7 +401,7 @@ class _Survey:
             self.rays, self.track_m, self.settings.openings.max_opening_m, self.designed
         )
         labelled = label_surfaces(walls, evidence, max_door_m=self.settings.openings.max_door_m)
-        glass = find_fronts(labelled.walls, self.dense, self.track_m)
+        glass = find_fronts(labelled.walls, self.find_dense(), self.track_m)
         glass_walls = room_bounds.find_glass_walls(
             labelled.walls,
             glass.panes,

@@ -12,13 +12,15 @@ from scanplan.geometry.lines import Line
 from scanplan.plan.model import front_rows, glass_views, line_labels, priors, surface_counts
 from scanplan.plan.model.front_rows import FrontRow
 from scanplan.plan.model.line_labels import Stretch
-from scanplan.plan.model.surface_counts import Side, SurfaceCounts
+from scanplan.plan.model.surface_counts import SQUARE, Side, SurfaceCounts
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, FACE_M
 from scanplan.rays.ray_set import RaySet, gather_rays
+from scanplan.store.registered_scans import RegisteredScans
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
+_EVERY_IN_SPACE_M = 0.5  # and of one that is 2 m away: beams above and below show more of it
 _THROUGH = 0.5  # of the rays to a row: what more of come through panes is outside, or mirrored
 
 
@@ -40,32 +42,54 @@ class Fronts:
 
 def gather_dense_rays(
     read_scans: Callable[[IntArray], Iterable[tuple[int, FloatArray]]],
-    sensors_m: Mapping[int, FloatArray],
+    registered: RegisteredScans,
     *,
+    planar: bool,
     left_out: Mapping[int, BoolArray] | None = None,
     threads: int = 1,
-) -> RaySet:
-    """Return the rays of planar scans from all along the way, one scan of each place.
+) -> tuple[RaySet, FloatArray]:
+    """Return rays from all along the way, of one scan of each place.
+
+    Of scans in space they are those of the beams that go nearly level: no others come square to
+    what stands upright.
 
     Parameters
     ----------
     read_scans : callable
         Returns `scan_id` and points (n, 3) in the map frame of some scans.
-    sensors_m : dict of int to (3,) float64
-        The sensor's position by `scan_id`, increasing, of all retained scans.
+    registered : registered_scans.RegisteredScans
+        All retained scans.
+    planar : bool
+        Whether they lie in one plane.
     left_out : dict of int to (72,) bool, optional
         See `ray_set.gather_rays`.
+
+    Returns
+    -------
+    rays : ray_set.RaySet
+    up : (s, 3) float64
+        The axis that the beams of each of its scans are inclined to, in the map frame.
     """
-    rows = choose_scans(np.array(list(sensors_m.values()))[:, :2])
-    scan_ids = np.array(list(sensors_m))[rows]
+    poses = registered.map_from_sensor
+    rows = choose_scans(poses[:, :2, 3], planar=planar)
+    scan_ids = registered.scan_ids[rows]
+    sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
     scans = read_scans(scan_ids)
-    return gather_rays(scans, sensors_m, planar=True, left_out=left_out, threads=threads)
+    if not planar:
+        scans = ((of, xyz_m[_are_level(xyz_m - sensors_m[of])]) for of, xyz_m in scans)
+    rays = gather_rays(scans, sensors_m, planar=planar, left_out=left_out, threads=threads)
+    return rays, poses[rows, :3, 2]
 
 
-def choose_scans(sensors_m: FloatArray) -> IntArray:
+def choose_scans(sensors_m: FloatArray, *, planar: bool) -> IntArray:
     """Return the rows of scans to find fronts by: one of each place (s, 2)."""
-    place = np.floor(sensors_m / _EVERY_M).astype(np.int64)
+    place = np.floor(sensors_m / (_EVERY_M if planar else _EVERY_IN_SPACE_M)).astype(np.int64)
     return np.sort(np.unique(place, axis=0, return_index=True)[1])
+
+
+def _are_level(way_m: FloatArray) -> BoolArray:
+    """Return which ways (n, 3) of rays lead up or down no more than those that come square."""
+    return np.abs(way_m[:, 2]) <= SQUARE * np.hypot(way_m[:, 0], way_m[:, 1])
 
 
 def find_fronts(walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray) -> Fronts:

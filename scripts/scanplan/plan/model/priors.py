@@ -31,8 +31,8 @@ _ENDS = np.array(
         ((0.10, 0.77, 0.03, 0.03, 0.07), (0.10, 0.77, 0.03, 0.03, 0.07)),
         ((0.25, 0.10, 0.25, 0.27, 0.13), (0.04, 0.03, 0.09, 0.56, 0.28)),
         ((0.03, 0.06, 0.20, 0.65, 0.06), (0.03, 0.06, 0.20, 0.65, 0.06)),
-        ((0.30, 0.03, 0.04, 0.58, 0.05), (0.03, 0.04, 0.09, 0.56, 0.28)),
-        ((0.30, 0.03, 0.04, 0.58, 0.05), (0.03, 0.06, 0.20, 0.65, 0.06)),
+        ((0.25, 0.03, 0.04, 0.55, 0.13), (0.03, 0.04, 0.09, 0.56, 0.28)),
+        ((0.23, 0.03, 0.04, 0.64, 0.06), (0.03, 0.06, 0.20, 0.65, 0.06)),
     )
 )
 # of a wall, a way out of the building, a recess, a window's pane, a way to the next wall, and a
@@ -223,7 +223,7 @@ def log_lengths(longest: int, *, line: int) -> FloatArray:
         out[kind] = -length_m / mean_m + np.log(np.expm1(COLUMN_M / mean_m))
     out[GLASS] += LEAST_M[GLASS] / _MEAN_M[GLASS]
     usual = _normal(length_m, *_LEAF_M)
-    out[DOOR] = _log(0.75 * usual + 0.25 * _log_uniform(length_m, 0.55, 2.6))
+    out[DOOR] = _log(0.75 * usual + 0.25 * _log_uniform(length_m, 0.6, 2.6))
     out[SHUT] = _log(0.9 * usual + 0.1 * _log_uniform(length_m, 0.6, 2.0))
     sash = _normal(np.log(length_m), np.log(_SASH_M[0]), _SASH_M[1]) / length_m
     out[WINDOW] = _log(0.8 * sash + 0.2 * _log_uniform(length_m, 0.4, 6.0))
