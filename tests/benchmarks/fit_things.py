@@ -21,6 +21,7 @@ from realistic.floors import is_named
 from scanplan.lab.evaluation import face_cells
 from scanplan.lab.evaluation.scores import false_walls, score_files
 from scanplan.plan.model import things
+from scanplan.plan.model.roofs import Roof
 from scanplan.plan.model.surface_features import Features
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.rays.ray_set import RaySet
@@ -95,8 +96,8 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     observed: list[tuple[Sequence[PlanWall], list[Features]]] = []
 
     def record(function: Function) -> Function:
-        def asked(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:
-            observed.append((parts, function(parts, rays)))
+        def asked(parts: Sequence[PlanWall], rays: RaySet, roof: Roof) -> list[Features]:
+            observed.append((parts, function(parts, rays, roof)))
             return observed[-1][1]
 
         return asked

@@ -18,7 +18,8 @@ NOTHING = SurfaceCounts(0.0, np.zeros((20, 20, 2, N_ENDS)))
 
 
 def look(walls, number=0, counts=NOTHING):
-    return Surroundings(walls).observe([counts] * len(walls), np.zeros(len(walls)))[number]
+    unknown = np.full(len(walls), NAN)
+    return Surroundings(walls).observe([counts] * len(walls), unknown, unknown)[number]
 
 
 def with_face(made):
@@ -221,7 +222,7 @@ class TestWhatRaysSay:
         ends = np.zeros((20, 20, 2, N_ENDS))
         ends[:, :2, 1, FACE] = 1.0
         counts = [SurfaceCounts(0.0, ends * of) for of in (5, 2, 1)]
-        found = Surroundings(walls).observe(counts, np.zeros(3))
+        found = Surroundings(walls).observe(counts, np.zeros(3), np.ones(3))
         assert [of.witnesses for of in found] == pytest.approx([2.5, 1.0, 0.5])
 
 
@@ -263,7 +264,8 @@ def test_a_leaf_is_turned_from_the_directions_of_the_walls():
 
 
 def test_what_else_is_known_is_handed_on():
-    (found,) = Surroundings([wall(0, 0, 3, 0, 0.2)]).observe([NOTHING], np.array([0.4]))
+    known = [np.array([share]) for share in (0.4, 0.9)]
+    (found,) = Surroundings([wall(0, 0, 3, 0, 0.2)]).observe([NOTHING], *known)
     assert (found.length_m, found.thickness_m) == pytest.approx((3, 0.2))
-    assert found.through_glass == 0.4
+    assert (found.through_glass, found.roofed) == (0.4, 0.9)
     assert math.isinf(look([wall(0, 0, 3, 0, NAN)]).thickness_m)

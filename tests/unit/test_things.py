@@ -37,6 +37,7 @@ PARTITION = Features(
     block_m=INF,
     turned_deg=0.2,
     through_glass=0.0,
+    roofed=1.0,
 )
 ROOM_WALL = replace(PARTITION, thickness_m=INF)
 OPEN_LEAF = replace(
@@ -85,6 +86,7 @@ FACADE_ACROSS = replace(
     n_inner=0,
     joint_m=INF,
     through_glass=1.0,
+    roofed=0.0,
 )
 TEXTBOOK = [
     pytest.param(PARTITION, WALL, id="a partition"),
@@ -128,6 +130,7 @@ def test_a_building_without_furniture_has_less_of_it():
         (PARTITION, WALL, {"top_m": 1.5}),
         (PARTITION, WALL, {"thickness_m": INF}),
         (PARTITION, WALL, {"through_glass": 0.9}),
+        (PARTITION, WALL, {"roofed": 0.0}),
         (PARTITION, WALL, {"before_m": 0.6}),
         (PARTITION, WALL, {"joint_m": INF}),
         (PARTITION, WALL, {"block_m": 0.8}),
@@ -140,6 +143,7 @@ def test_a_building_without_furniture_has_less_of_it():
         (CUPBOARD, FURNITURE, {"n_outer": 0}),
         (FACADE_ACROSS, OUTSIDE, {"witnesses": 1.0}),
         (FACADE_ACROSS, OUTSIDE, {"through_glass": 0.0}),
+        (FACADE_ACROSS, OUTSIDE, {"roofed": 1.0}),
     ],
 )
 def test_what_speaks_against_a_kind_makes_it_less_of_one(found, kind, change):
@@ -171,3 +175,12 @@ def test_a_building_has_a_wall_at_least():
     p = np.array([(0.3, 0.1, 0.6, 0.0), (0.4, 0.0, 0.6, 0.0), (0.2, 0.1, 0.7, 0.0)])
     assert things.choose_kinds(p) == [FURNITURE, WALL, FURNITURE]
     assert things.choose_kinds(p[:0]) == []
+
+
+@pytest.mark.parametrize(("roofed", "is_outside"), [(0.0, True), (1.0, False), (0.5, False)])
+def test_ground_without_a_ceiling_is_outside(roofed, is_outside):
+    assert things.is_outside(roofed) == is_outside
+
+
+def test_ground_of_which_ceilings_are_not_known_is_within():
+    assert not things.is_outside(NAN)

@@ -20,9 +20,11 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
+from scanplan.plan.model import things
 from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.likely_openings import settle_openings
+from scanplan.plan.model.roofs import Roof
 from scanplan.plan.model.surfaces import label_surfaces
 from scanplan.plan.model.wall_labels import LabelEvidence
 from scanplan.plan.openings import OpeningSettings, classify_gap
@@ -306,6 +308,7 @@ class _Surfaces:
         Doors, from jamb to jamb: in fronts of glass, and where leaves stand open in planar scans.
     open_leaves_m : list of (2, 2) float64
         The surfaces of open leaves that labels tell from walls, from end to end.
+    roof : roofs.Roof
     nearly : list of Nearly
         What was nearly drawn.
     n_lines, n_dropped : int
@@ -319,6 +322,7 @@ class _Surfaces:
     furnished: list[BaseGeometry]
     ways_m: list[FloatArray]
     open_leaves_m: list[FloatArray]
+    roof: Roof
     nearly: list[Nearly]
     n_lines: int
     n_dropped: int
@@ -430,6 +434,7 @@ class _Survey:
             furnished=furnished,
             ways_m=[*(leaf.way_m for leaf in leaves), *glass.ways_m],
             open_leaves_m=labelled.leaves_m,
+            roof=labelled.roof,
             nearly=labelled.nearly,
             n_lines=traced.n_lines,
             n_dropped=traced.n_dropped,
@@ -519,6 +524,11 @@ class _Survey:
             floor=floor,
             threads=self.threads,
         )
+        rooms = [
+            room
+            for room in rooms
+            if room.entered or not things.is_outside(surfaces.roof.share_above(room.polygon))
+        ]
         # returns of leaves are explained, as those of walls are
         leaves = [plan_tables.draw_leaf(ends_m) for ends_m in surfaces.open_leaves_m]
         pieces = find_pieces(

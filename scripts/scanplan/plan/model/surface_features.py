@@ -66,6 +66,8 @@ class Features:
         From the nearest main direction of the building, 0 to 45.
     through_glass : float
         Share of its rays that come through windows and panes.
+    roofed : float
+        How much of the ground before it has a ceiling, over what is usual there; NaN: not known.
     """
 
     length_m: float
@@ -84,6 +86,7 @@ class Features:
     block_m: float
     turned_deg: float
     through_glass: float
+    roofed: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,14 +100,16 @@ class Surroundings:
 
     walls: Sequence[PlanWall]
 
-    def observe(self, counts: Sequence[SurfaceCounts], through_glass: FloatArray) -> list[Features]:
+    def observe(
+        self, counts: Sequence[SurfaceCounts], through_glass: FloatArray, roofed: FloatArray
+    ) -> list[Features]:
         """Return the features of each wall, given what rays say of it.
 
         Parameters
         ----------
         counts : sequence of surface_counts.SurfaceCounts
             Of each wall.
-        through_glass : (n,) float64
+        through_glass, roofed : (n,) float64
         """
         witnesses = [
             _Seen.of(wall, of_wall) for wall, of_wall in zip(self.walls, counts, strict=True)
@@ -128,6 +133,7 @@ class Surroundings:
                 block_m=float(self._block_m[number]),
                 turned_deg=float(self._turned_deg[number]),
                 through_glass=float(through_glass[number]),
+                roofed=float(roofed[number]),
             )
             for number, (wall, shown) in enumerate(zip(self.walls, witnesses, strict=True))
             for n_inner, n_outer in [self._count_corners(number)]

@@ -8,6 +8,7 @@ import numpy as np
 
 from scanplan.plan.model import glass_views, line_ends, line_labels, things, wall_labels
 from scanplan.plan.model.designed_walls import DesignedWalls
+from scanplan.plan.model.roofs import Roof, find_roof
 from scanplan.plan.model.surface_counts import COLUMN_M
 from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.plan.model.wall_labels import LabelEvidence, label_wall
@@ -30,12 +31,14 @@ class LabelledSurfaces:
         The surfaces of open leaves, from end to end.
     nearly : list of plan_wall.Nearly
         What is likelier something else: surfaces that may be walls, and openings of walls.
+    roof : roofs.Roof
     """
 
     walls: list[PlanWall]
     tops_m: list[float]
     leaves_m: list[FloatArray]
     nearly: list[Nearly]
+    roof: Roof
 
 
 def label_surfaces(
@@ -51,7 +54,8 @@ def label_surfaces(
         Walls go on for a door as wide to the next one.
     """
     parts = [found for wall in walls for found in label_wall(wall, evidence)]
-    found = observe_surfaces([part for part, _ in parts], evidence.rays)
+    roof = find_roof([part for part, _ in parts], evidence.rays)
+    found = observe_surfaces([part for part, _ in parts], evidence.rays, roof)
     designed = _weigh_designed([part for part, _ in parts], evidence.designed)
     p = things.weigh_things(found, designed)
     kinds = things.choose_kinds(p)
@@ -73,6 +77,7 @@ def label_surfaces(
         tops_m=[top_m if wall.right else math.nan for wall, top_m in kept],
         leaves_m=[part.ends for (part, _), kind, _ in weighed if kind == things.LEAF],
         nearly=[*nearly, *(near for wall, _ in kept for near in wall.nearly)],
+        roof=roof,
     )
 
 
@@ -101,7 +106,8 @@ def _weigh_designed(parts: Sequence[PlanWall], designed: DesignedWalls | None) -
     return np.array(weights, float)
 
 
-def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet) -> list[Features]:
+def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet, roof: Roof) -> list[Features]:
     """Return the features of parts of walls, whose openings are known."""
     counts = [wall_labels.count_wall(part, rays) for part in parts]
-    return Surroundings(parts).observe(counts, glass_views.find_glass_shares(parts, rays))
+    through_glass = glass_views.find_glass_shares(parts, rays)
+    return Surroundings(parts).observe(counts, through_glass, roof.share_before(parts))

@@ -157,6 +157,15 @@ DENSITIES: Mapping[str, Density] = {
             (0.43, 0.14, 0.16, 0.27),
         ),
     ),
+    "roofed": Density(
+        (0.1, 0.3, 0.8),
+        (
+            (0.005, 0.01, 0.06, 0.94),
+            (0.005, 0.005, 0.09, 0.9),
+            (0.005, 0.02, 0.07, 0.91),
+            (0.67, 0.03, 0.1, 0.19),
+        ),
+    ),
 }
 """By the names of `Features`: shares of the tuning half of the bench of realistic floors, rounded.
 
@@ -197,6 +206,20 @@ def weigh_things(found: Sequence[Features], known: FloatArray | None = None) -> 
         own = np.exp(weigh_kinds(likely, shares, TEMPER)).sum(axis=0)
         shares = (own + _KNOWN * np.array(SHARES)) / (len(found) + _KNOWN)
     return np.exp(weigh_kinds(likely, shares, TEMPER))
+
+
+def is_outside(roofed: float) -> bool:
+    """Return whether ground is likelier outside than within the building.
+
+    Parameters
+    ----------
+    roofed : float
+        As of `Features`, of the ground itself; NaN, where ceilings are not known, says nothing.
+    """
+    density = DENSITIES["roofed"]
+    of_kinds = np.transpose(density.shares)[np.searchsorted(density.edges, roofed, "right")]
+    odds = SHARES[OUTSIDE] * of_kinds[OUTSIDE] / (SHARES[WALL] * of_kinds[WALL])
+    return not np.isnan(roofed) and bool(odds > 1)
 
 
 def weigh_pocket(length_m: float) -> float:
