@@ -13,9 +13,11 @@ from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.model.roofs import find_roof
 
 SENSOR = (2.0, 2.0, 1.0)
+SENSOR_M = np.array([SENSOR[:2]])
 CEILING = [(x, y, 2.7) for x in np.arange(0.05, 4, 0.1) for y in np.arange(0.05, 4, 0.1)]
 FLOOR = [(x, y, 0.0) for x in np.arange(0.05, 4, 0.1) for y in np.arange(-6, 4, 0.1)]
-ACROSS = [(x, -6.0, z) for x in np.arange(0, 4, 0.1) for z in (0.5, 2.5, 6.0)]
+ACROSS = [(x, -6.0, z) for x in np.arange(-1, 5, 0.05) for z in (0.5, 2.5, 6.0, 8.0)]
+"""What rays over the ceiling's height end at, from y = -1 on."""
 
 
 def facing(x0, y0, x1, y1):
@@ -64,14 +66,34 @@ def test_what_is_half_seen_everywhere_is_usual():
 def test_who_sees_no_ceilings_does_not_know_what_has_none(points, planar):
     roof = find_roof(ROOM, look(points, planar=planar))
     assert np.isnan(roof.share_before(ROOM)).all()
-    assert math.isnan(roof.share_above(shapely.box(0, 0, 4, 4)))
+    assert roof.find_outside(shapely.box(0, -6, 4, 4), SENSOR_M, min_area_m2=2.0).is_empty
 
 
-def test_ground_is_roofed_as_far_as_its_cells_are():
+def test_ground_beyond_a_front_is_outside_where_rays_go_above_it():
+    """Those to 6 m of height are above 3 m from y = -1.2 on."""
+    roof = find_roof(ROOM, look(CEILING + FLOOR + ACROSS))
+    found = roof.find_outside(shapely.box(0, -6, 4, 4), SENSOR_M, min_area_m2=2.0)
+    assert found.covers(shapely.box(1.2, -4.9, 2.8, -1.5))
+    assert not found.intersects(shapely.box(0, -0.7, 4, 4))
+
+
+def test_a_yard_that_sensors_were_in_is_kept():
+    roof = find_roof(ROOM, look(CEILING + FLOOR + ACROSS))
+    track_m = np.array([(2.0, 2.0), (2.0, -3.0)])
+    assert roof.find_outside(shapely.box(0, -6, 4, 4), track_m, min_area_m2=2.0).is_empty
+
+
+def test_ground_whose_ceiling_no_ray_reached_is_not_known_to_be_outside():
+    """Such as a room that is seen through its door."""
     roof = find_roof(ROOM, look(CEILING + FLOOR))
-    assert roof.share_above(shapely.box(0, 0, 4, 4)) == 1
-    assert roof.share_above(shapely.box(0, -6, 4, -1)) == 0
-    assert roof.share_above(shapely.box(0, -4, 4, 4)) == pytest.approx(0.5)
+    assert roof.find_outside(shapely.box(0, -6, 4, 4), SENSOR_M, min_area_m2=2.0).is_empty
+
+
+def test_small_ground_without_a_ceiling_is_no_outside():
+    """Such as below a lamp that hangs low."""
+    dark = [place for place in CEILING if not (1 < place[0] < 2.7 and 1 < place[1] < 2.7)]
+    roof = find_roof(ROOM, look(dark + FLOOR + ACROSS))
+    assert roof.find_outside(shapely.box(0, 0, 4, 4), SENSOR_M + 1.5, min_area_m2=2.0).is_empty
 
 
 def test_what_is_lower_than_the_sensor_is_no_ceiling():

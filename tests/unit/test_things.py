@@ -177,10 +177,8 @@ def test_a_building_has_a_wall_at_least():
     assert things.choose_kinds(p[:0]) == []
 
 
-@pytest.mark.parametrize(("roofed", "is_outside"), [(0.0, True), (1.0, False), (0.5, False)])
-def test_ground_without_a_ceiling_is_outside(roofed, is_outside):
-    assert things.is_outside(roofed) == is_outside
-
-
-def test_ground_of_which_ceilings_are_not_known_is_within():
-    assert not things.is_outside(NAN)
+def test_ground_without_a_ceiling_is_outside():
+    assert things.are_outside(np.array([[0.0, 0.5], [1.0, 3.0]])).tolist() == [
+        [True, False],
+        [False, False],
+    ]

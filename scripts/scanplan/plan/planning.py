@@ -20,7 +20,6 @@ from scanplan.plan.furniture.columns import find_column_faces, tell_columns
 from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
-from scanplan.plan.model import things
 from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.fronts import find_fronts
 from scanplan.plan.model.likely_openings import settle_openings
@@ -507,6 +506,10 @@ class _Survey:
     def find_spaces(self, surfaces: _Surfaces) -> _Spaces:
         """Return rooms and what stands in them."""
         bounds, floor = surfaces.bounds, self._floor_with(surfaces.furnished)
+        outside = surfaces.roof.find_outside(
+            floor, self.track_m, min_area_m2=self.settings.rooms.min_area_m2
+        )
+        floor = free_space.difference_on_grid(floor, outside)
         hidden = free_space.difference_on_grid(floor, self.seen_floor)
         partings = room_bounds.find_partings(
             bounds,
@@ -524,11 +527,6 @@ class _Survey:
             floor=floor,
             threads=self.threads,
         )
-        rooms = [
-            room
-            for room in rooms
-            if room.entered or not things.is_outside(surfaces.roof.share_above(room.polygon))
-        ]
         # returns of leaves are explained, as those of walls are
         leaves = [plan_tables.draw_leaf(ends_m) for ends_m in surfaces.open_leaves_m]
         pieces = find_pieces(

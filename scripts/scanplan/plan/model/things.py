@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from scanplan.plan.model.surface_features import Features
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray
 
 KINDS = ("wall", "leaf", "furniture", "outside")
 WALL, LEAF, FURNITURE, OUTSIDE = range(len(KINDS))
@@ -208,18 +208,18 @@ def weigh_things(found: Sequence[Features], known: FloatArray | None = None) -> 
     return np.exp(weigh_kinds(likely, shares, TEMPER))
 
 
-def is_outside(roofed: float) -> bool:
-    """Return whether ground is likelier outside than within the building.
+def are_outside(roofed: FloatArray) -> BoolArray:
+    """Return which grounds (...) are likelier outside than within the building.
 
     Parameters
     ----------
-    roofed : float
-        As of `Features`, of the ground itself; NaN, where ceilings are not known, says nothing.
+    roofed : (...) float64
+        As of `Features`, of the ground itself.
     """
     density = DENSITIES["roofed"]
     of_kinds = np.transpose(density.shares)[np.searchsorted(density.edges, roofed, "right")]
-    odds = SHARES[OUTSIDE] * of_kinds[OUTSIDE] / (SHARES[WALL] * of_kinds[WALL])
-    return not np.isnan(roofed) and bool(odds > 1)
+    weights = np.array(SHARES) * of_kinds
+    return np.asarray(weights[..., OUTSIDE] > weights[..., WALL])
 
 
 def weigh_pocket(length_m: float) -> float:
