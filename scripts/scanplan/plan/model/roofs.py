@@ -114,7 +114,7 @@ def find_roof(walls: Sequence[PlanWall], rays: RaySet) -> Roof:
     if usual < _LEAST_USUAL:
         return Roof(keys, math.nan, np.empty((0, 2, 2)))
     is_near = np.isin(number, _cells_around(rays.sensors_m[:, :2]))
-    ceiling_z_m = np.quantile(xyz_m[is_near, 2], _CEILING) if is_near.any() else math.inf
+    ceiling_z_m = float(np.quantile(xyz_m[is_near, 2], _CEILING)) if is_near.any() else math.inf
     return Roof(keys, usual, _find_above(xyz_m, sensor_m, ceiling_z_m + STRETCH_M))
 
 
