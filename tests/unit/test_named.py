@@ -134,6 +134,19 @@ def test_the_model_has_what_was_named_by_its_class(tmp_path):
     assert [space.ObjectType for space in model.by_type("IfcSpace")] == ["restroom", None]
 
 
+def test_the_use_of_a_room_and_its_number_stand_below_the_name_that_it_was_given(tmp_path):
+    measured, _ = corrected(
+        tmp_path, "{element: room, at: [1, 2], name: Bath, use: restroom}", pieces=()
+    )
+    regular, drafted = draft_plan(measured, SETTINGS)
+    bath, other = compose_presentation(measured, regular, drafted).stamps
+    lines = [word.text for word in bath.words]
+    assert lines[0].startswith("Bath") and lines[1:] == ["12.0 m²", "No. 0, restroom"]
+    assert (bath.facts["USE"], other.facts["USE"], len(other.words)) == ("restroom", "", 2)
+    heights = [word.place[1] for word in bath.words]
+    assert heights == sorted(heights, reverse=True)
+
+
 def test_an_opening_that_is_added_may_swing(tmp_path):
     entry = "{element: opening, action: add, kind: window, line: [[1, 0], [2, 0]], swing: [1, 1]}"
     made, outcome = corrected(tmp_path, entry)

@@ -103,6 +103,26 @@ def test_a_pane_hides_panes_alone_and_only_where_it_is_drawn():
         assert [symbol.element for symbol in sheet.symbols] == drawn
 
 
+@pytest.mark.parametrize(
+    ("kind", "y_m", "drawn"),
+    [
+        # where two rooms end nowhere each has a gap: they lie on one another, or apart
+        ("gap", -0.04, ["gap-0"]),
+        ("gap", -0.2, ["gap-0", "gap-1"]),
+        # a door is no gap once more, but a gap may be where a door is
+        ("door", -0.04, ["door-1"]),
+    ],
+)
+def test_what_two_rooms_have_between_them_is_drawn_once(kind, y_m, drawn):
+    rows = [
+        ((4.1, 0.0, 7.1, 0.0), -1, "gap", np.nan, np.nan, 1, -1),
+        ((4.1, y_m, 7.1, y_m), -1, kind, 0.0, 2.5, 1, -1),
+    ]
+    openings = floorplan_making.openings(rows)
+    sheet = composed(walls=floorplan_making.walls([]), openings=openings)
+    assert [symbol.element for symbol in sheet.symbols] == drawn
+
+
 def test_a_pane_in_no_wall_is_drawn_as_far_as_it_bounds_a_room():
     # 2 m beyond the room that it bounds, which ends at x 7.1
     row = ((4.1, -0.2, 9.1, -0.2), -1, "glass", 0.0, 2.5, 1, -1)
@@ -116,16 +136,20 @@ def test_a_pane_in_no_wall_is_drawn_as_far_as_it_bounds_a_room():
     assert pane.facts["width_changed_m"] == pytest.approx(pane.width_m - 5)
 
 
-def test_a_hole_in_a_wall_of_no_room_is_drawn_and_one_in_a_room_is_not():
+def test_holes_of_walls_are_drawn_and_what_parts_a_room_in_no_wall_is_not():
     wall = ((8.0, 0, 8.0, 3), 0.2, 9, 10, "observed")
     rows = [
         ((8.0, 1, 8.0, 1.6), 6, "gap", 0, 2.5, -1, -1),
         ((8.0, 2, 8.0, 2.6), 6, "passage", 0, 2.5, 1, 1),
+        ((4.1, 1.5, 7.1, 1.5), -1, "passage", 0, 2.5, 1, 1),
     ]
     walls = [*floorplan_making.WALLS, wall]
     openings = floorplan_making.openings(rows, walls)
     sheet = composed(walls=floorplan_making.walls(walls), openings=openings)
-    assert [(symbol.element, symbol.kind) for symbol in sheet.symbols] == [("gap-0", "passage")]
+    assert [(symbol.element, symbol.kind) for symbol in sheet.symbols] == [
+        ("gap-0", "passage"),
+        ("passage-1", "passage"),
+    ]
 
 
 def test_what_was_changed_and_how_areas_are_measured_is_said():
@@ -138,6 +162,11 @@ def test_the_overview_is_a_page_of_a4_without_dimensions():
     regular, _ = draft_plan(measured, SETTINGS)
     page = compose_overview(measured, regular)
     assert page is not None and page.page.name == "A4" and page.dimensions == []
+    # what a manager asks: how much floor, which doors, what it is worth
+    said = " ".join(word.text for word in paper_words(page))
+    assert "2 closed rooms, 21.0 m² net." in said and "2 doors: 1 of 0.9 m, 1 of 1.0 m." in said
+    assert [stamp.facts["NAME"] for stamp in page.stamps] == ["Room 0", "Room 1"]
+    assert any(word.element == "title:VERDICT" for word in paper_words(page))
     # more rooms than A4 has rows
     tiles = [shapely.box(x, y, x + 0.9, y + 0.9) for x in range(20) for y in range(20)]
     many, _ = draft_plan(floorplan_making.plan(rooms=floorplan_making.rooms(tiles)), SETTINGS)

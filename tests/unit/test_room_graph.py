@@ -27,12 +27,17 @@ def test_doors_join_rooms_and_windows_do_not():
 def test_wheelchairs_reach_rooms_through_ways_of_90_cm():
     # the entrance is 1 m wide, the door between the rooms 0.9 m
     found = read(plan())["wheelchair"]
-    assert found == {"least_width_m": 0.9, "groups": [[0, 1]], "from_outside": [0, 1]}
+    joined = {"least_width_m": 0.9, "groups": [[0, 1]], "from_outside": [0, 1]}
+    assert found == {**joined, "to_tape": []}
     narrow = floorplan_making.openings()
     narrow["width_m"][1] = 0.89
     found = read(plan(openings=narrow))["wheelchair"]
     # of 12 and of 9 square metres
     assert found["groups"] == [[0], [1]] and found["from_outside"] == [0]
+    # doors are seen too narrow, by up to 5 cm
+    assert found["to_tape"] == [1]
+    narrow["width_m"][1] = 0.84
+    assert read(plan(openings=narrow))["wheelchair"]["to_tape"] == []
     assert read(bare())["wheelchair"]["groups"] == []
 
 

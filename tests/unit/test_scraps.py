@@ -66,6 +66,15 @@ def test_a_wall_that_is_mostly_a_way_from_a_room_into_itself_goes_with_it():
     assert NEW in leave_scraps(between).walls["wall"]
 
 
+@pytest.mark.parametrize(("width_m", "is_left_out"), [(2.0, True), (1.6, False)])
+def test_a_way_from_a_room_into_itself_bounds_no_room(width_m, is_left_out):
+    # along the side of a room, 0.8 m off the next walls: 0.4 m are wall, too little for one, or 0.8
+    line, way = (0.8, 2.0, 3.2, 2.0), (1.0, 2.0, 1.0 + width_m, 2.0)
+    plan = with_wall(line, [(way, "passage", 0.0, 2.5, 0, 0)])
+    plan = replace(plan, rooms=floorplan_making.rooms([shapely.box(0, 0, 4, 2)]))
+    assert (NEW not in leave_scraps(plan).walls["wall"]) == is_left_out
+
+
 def poche(plan):
     regular, changes = draft_plan(plan, SETTINGS)
     sheet = compose_presentation(plan, regular, changes)

@@ -27,7 +27,7 @@ TEXT_STYLE = "SCANPLAN"
 STAMP = "ROOM-STAMP"
 """What the name of each room's block begins with."""
 TITLE = "TITLE-BLOCK"
-STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED", "CORRECTED")
+STAMP_TAGS = ("NUMBER", "NAME", "AREA", "PERIMETER", "HEIGHT", "CLOSED", "CORRECTED", "USE")
 SYMBOL_TAGS = {
     "TAG": "element",
     "WIDTH": "width_m",

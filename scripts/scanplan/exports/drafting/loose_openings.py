@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
+from scanplan.exports.drafting.scraps import BARE
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -52,20 +53,28 @@ def _limit_line(line_m: FloatArray, along: BaseGeometry) -> FloatArray:
 def _find_doubles(plan: FloorPlan, is_drawn: BoolArray) -> BoolArray:
     """Return which openings (m,) are others once more.
 
-    What is in no wall and lies behind the face of one, or a pane beside one as wide that is drawn.
+    What is in no wall and lies behind the face of one, a pane beside one as wide that is drawn, or
+    a bare one on any that is: where two rooms end nowhere each has a gap.
     """
     lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings))
     widths_m = np.asarray(plan.openings["width_m"], float)
-    grounds = overlays.buffer_shapes(lines, CORNER_M, cap_style="flat")
     is_pane = np.isin(plan.openings["type"], _PANES)
+    is_bare = np.isin(plan.openings["type"], BARE)
+    half_m = np.nan_to_num(plan.openings["thickness_m"], nan=plan.assumed_thickness_m) / 2
+    deep_m = np.where(is_pane, CORNER_M, half_m)
+    grounds = overlays.buffer_shapes(lines, deep_m, cap_style="flat")
     bodies = overlays.unite_areas(plan.bodies)
     panes = bodies
+    ways = overlays.unite_areas([bodies, *grounds[is_drawn & ~is_pane & ~is_bare]])
     is_double = np.zeros(len(lines), bool)
     for row in np.argsort(-widths_m, kind="stable").tolist():
         if plan.hosts[row] >= 0 or not is_drawn[row]:
             continue
-        beside_m = overlays.intersect_lines(lines[row], panes if is_pane[row] else bodies).length
+        others = panes if is_pane[row] else ways if is_bare[row] else bodies
+        beside_m = overlays.intersect_lines(lines[row], others).length
         is_double[row] = beside_m > widths_m[row] / 2
         if is_pane[row] and not is_double[row]:
             panes = overlays.unite_areas([panes, grounds[row]])
+        if is_bare[row] and not is_double[row]:
+            ways = overlays.unite_areas([ways, grounds[row]])
     return is_double

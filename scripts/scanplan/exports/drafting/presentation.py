@@ -139,10 +139,9 @@ def _find_backs(plan: FloorPlan) -> Array:
 
 
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings, but what has neither leaf nor pane and leads from a room into itself."""
-    # a hole in a wall of no room is one all the same
-    is_hole = (plan.hosts >= 0) & np.asarray(plan.openings["room_a"] < 0, bool)
-    is_none = (find_nowhere(plan) & ~is_hole) | ~shapely.is_empty(_find_backs(plan))
+    """Yield openings, but what is in no wall and leads from a room into itself, and recesses."""
+    # a hole in a wall is one, whatever is behind it
+    is_none = (find_nowhere(plan) & (plan.hosts < 0)) | ~shapely.is_empty(_find_backs(plan))
     for row, symbol in enumerate(list_symbols(plan)):
         if not is_none[row]:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))

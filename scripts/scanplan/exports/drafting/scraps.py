@@ -12,7 +12,7 @@ from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.tolerances import CORNER_M, END_M
-from scanplan.types import BoolArray
+from scanplan.types import BoolArray, FloatArray
 
 BARE = ("passage", "gap")
 """Types of openings without a leaf or a pane."""
@@ -61,29 +61,33 @@ def find_nowhere(plan: FloorPlan) -> BoolArray:
 
 
 def _find_bounding(plan: FloorPlan) -> BoolArray:
-    """Return which walls (n,) bound rooms along half of their length or more."""
+    """Return which walls (n,) bound rooms along half of their length or more.
+
+    Less ways from a room into itself: these part nothing.
+    """
     lines_m = centrelines_m(plan.walls)
     outlines = overlays.unite_areas(plan.areas).boundary
     near = overlays.buffer_shapes(outlines, 2 * moved_rooms.ON_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
-    return shapely.length(along) >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2
+    bounding_m = shapely.length(along) - _sum_nowhere(plan)
+    return bounding_m >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2
 
 
 def _find_pieces(plan: FloorPlan) -> BoolArray:
     """Return which walls (n,) end loose, and are short or more likely wrong than right."""
     lines_m = centrelines_m(plan.walls)
-    solid_m = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T)
-    is_nowhere = find_nowhere(plan)
-    is_hosted = plan.hosts >= 0
-    np.subtract.at(
-        solid_m,
-        plan.hosts[is_hosted & is_nowhere],
-        plan.openings["width_m"][is_hosted & is_nowhere],
-    )
-    is_piece = solid_m < _PIECE_M
-    is_piece[plan.hosts[is_hosted & ~is_nowhere]] = False
+    is_piece = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) - _sum_nowhere(plan) < _PIECE_M
+    is_piece[plan.hosts[(plan.hosts >= 0) & ~find_nowhere(plan)]] = False
     unlikely = np.asarray(plan.walls.get("p_true", np.ones(len(lines_m))), float) < 1 / 2
     return (is_piece | unlikely) & ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+
+
+def _sum_nowhere(plan: FloorPlan) -> FloatArray:
+    """Return how wide openings of each wall (n,) that lead nowhere are together, metres."""
+    is_nowhere = (plan.hosts >= 0) & find_nowhere(plan)
+    widths_m = np.zeros(len(plan.walls["wall"]))
+    np.add.at(widths_m, plan.hosts[is_nowhere], plan.openings["width_m"][is_nowhere])
+    return widths_m
 
 
 def _find_outside(plan: FloorPlan) -> BoolArray:

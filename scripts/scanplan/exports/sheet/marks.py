@@ -168,7 +168,7 @@ class Stamp:
     words : list of Word
         Its lines, from the top.
     facts : dict of str to str
-        `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, `CORRECTED`, as text.
+        `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, `CORRECTED`, `USE`, as text.
     verify : bool
     """
 

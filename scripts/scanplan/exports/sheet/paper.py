@@ -143,7 +143,8 @@ class Page:
 def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterator[Slot]:
     """Yield the columns left of a title block and above it, in a strip of so many rows."""
     x0, y0, x1, _ = inner_mm
-    top = y0 + rows * Paper.ROW
+    # in the middle of what the strip is higher: the last row is off the frame
+    top = y0 + rows * Paper.ROW + Paper.ROW / 4
     n_left = int((x1 - x0 - 3 * Paper.COLUMN) // Paper.COLUMN)
     for column in range(n_left):
         yield Slot(x0 + column * Paper.COLUMN, top, rows)

@@ -19,6 +19,9 @@ from scanplan.types import FloatArray
 from scanplan.validation.confidence import END
 from scanplan.validation.doubts import MARKS, find_doubtful_rooms, list_loose_ends, mark_doubt
 
+_DETAIL = (Letters.SMALL, Paper.NAME)
+"""Letters and greatest width of what stands below a room's name."""
+
 
 def stamp_rooms(
     page: Page, plan: FloorPlan, space: LabelSpace, *, is_doubted: bool = True
@@ -44,6 +47,7 @@ def stamp_rooms(
             "HEIGHT": _state_height(page, plan),
             "CLOSED": "yes" if closed else "no",
             "CORRECTED": str(rooms["corrected"][row]) if corrected[row] else "no",
+            "USE": clean_text(_said_of(plan, "use", row)),
         }
         outline = page.place_shape(areas[row])
         middle = page.to_paper(np.array([rooms["x_m"][row], rooms["y_m"][row]]))
@@ -51,8 +55,11 @@ def stamp_rooms(
         marks = " *" * int(corrected[row]) + " ?" * int(doubtful[row])
         title += marks
         label = f"{number}{marks}"
-        said = page.locale.say(area)
-        chosen = space.place(_stamp_places(outline, middle, number, title, said, label))
+        # a name that a person gave does not say the number that tables have
+        known_by = f"{page.locale.say('No.')} {number}" * bool(_said_of(plan, "name", row))
+        use = shorten_text(", ".join(filter(None, [known_by, facts["USE"]])), *_DETAIL)
+        small = [page.locale.say(area), *([use] if use else [])]
+        chosen = space.place(_stamp_places(outline, middle, title, small, label, number))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
         stamps[row] = Stamp(words, facts, bool(doubtful[row]))
     return [stamps[row] for row in sorted(stamps)]
@@ -60,8 +67,12 @@ def stamp_rooms(
 
 def _name_room(page: Page, plan: FloorPlan, row: int) -> str:
     """Return the name that a person gave a room, or its number in the sheet's language."""
-    given = plan.rooms.get("name", np.full(len(plan.areas), "", object))[row]
-    return str(given) or page.locale.say(plan.room_names[row])
+    return _said_of(plan, "name", row) or page.locale.say(plan.room_names[row])
+
+
+def _said_of(plan: FloorPlan, column: str, row: int) -> str:
+    """Return the name or use that a person gave a room; empty without."""
+    return str(plan.rooms[column][row]) if column in plan.rooms else ""
 
 
 def _state_height(page: Page, plan: FloorPlan) -> str:
@@ -73,9 +84,17 @@ def _state_height(page: Page, plan: FloorPlan) -> str:
 
 
 def _stamp_places(
-    outline: BaseGeometry, middle: FloatArray, number: int, title: str, area: str, label: str
+    outline: BaseGeometry,
+    middle: FloatArray,
+    title: str,
+    small: Sequence[str],
+    label: str,
+    number: int,
 ) -> Iterator[Candidate]:
-    """Yield a room's name and area in it, its label of a number alone, and that led out of it."""
+    """Yield a room's name over lines in small letters, and what of these there is room for.
+
+    That is all of them, the first (its area), none below its number alone, and that led out of it.
+    """
     element = f"room-{number}"
     x0, y0, x1, y1 = outline.bounds
     shares = np.linspace(0, 1, 9)[1:-1]
@@ -85,11 +104,17 @@ def _stamp_places(
     for place in places:
         off = np.hypot(*(place - middle)) / reach
         apart = np.array([0, (Letters.MEDIUM + Letters.SMALL) / 2 + 0.5 * Letters.SMALL])
+        below = np.array([0, 1.5 * Letters.SMALL])
         lines = [
             Word("stamp", title, place + apart / 2, Letters.MEDIUM, element=element),
-            Word("stamp", area, place - apart / 2, Letters.SMALL, element=element),
+            *(
+                Word("stamp", text, place - apart / 2 - row * below, Letters.SMALL, element=element)
+                for row, text in enumerate(small)
+            ),
         ]
         yield Candidate(lines, off)
+        if len(small) > 1:
+            yield Candidate(lines[:2], 1 + off)
         # a number says that it is a room
         bare = label if title.endswith(f" {label}") else title
         short = Word("stamp", bare, lines[0].place, Letters.MEDIUM)
