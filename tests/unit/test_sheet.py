@@ -166,9 +166,27 @@ def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
     *below, beside = page.slots()
     assert all(slot.y_mm < y0 for slot in below) and right < beside.x_mm
     assert y0 <= beside.y_mm - beside.rows * Paper.ROW and beside.y_mm <= y1 - Paper.ROW
+    # what is beside it is whole, and stands there alone
+    places = page.place_tables(blocks)
+    assert [[(slot.x_mm > right, slot.rows) for slot in parts] for parts in places] == [
+        [(False, 6)],
+        [(False, 8)],
+        [(True, 8)],
+        [(True, 15)],
+    ]
     # a lower one is as large above them
     lower = paper.choose_page(low_m, np.array([20.8, 12.0]), 0.0, blocks)
     assert (lower.name, lower.scale, lower.is_beside) == ("A3", 75, False)
+
+
+def test_no_column_stays_empty():
+    # as wide as high: beside a column it fills an A3 better
+    page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 0])
+    assert not page.is_beside
+    page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 2])
+    assert page.is_beside
+    *_, (rooms,) = page.place_tables([6, 8, 0, 2])
+    assert rooms.x_mm > page.drawing_mm[2] and rooms.rows == 2
 
 
 def test_a_plan_beyond_all_usual_scales_fills_the_largest_sheet():
@@ -193,7 +211,7 @@ def test_no_row_of_a_table_stands_alone_unless_the_scale_would_be_smaller(n_room
         return paper.choose_page(np.zeros(2), np.array([18.0, height_m]), 0.0, blocks)
 
     page = chosen(11.0)
-    (parts,) = paper.fill_slots(page.slots(), blocks)[2:]
+    (parts,) = page.place_tables(blocks)[2:]
     assert sum(part.rows for part in parts) == n_rooms
     assert len(parts) == 1 or min(part.rows for part in parts) >= 3
     # as high a plan as the sheet holds with tables as low as can be

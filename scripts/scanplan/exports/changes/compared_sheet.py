@@ -21,7 +21,7 @@ from scanplan.exports.sheet.lettering import (
 )
 from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
-from scanplan.exports.sheet.paper import Page, Slot, choose_page, fill_slots
+from scanplan.exports.sheet.paper import Page, Slot, choose_page
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.types import FloatArray
@@ -97,7 +97,7 @@ def compose_compared_sheet(
     blocks = [6, len(legend), max(len(listed), 1)]
     page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, blocks)
     page = replace(page, locale=locale)
-    bar, legend_slots, table_slots = fill_slots(page.slots(), blocks) or ([], [], [])
+    bar, legend_slots, table_slots = page.place_tables(blocks) or ([], [], [])
     marks += [_draw_arrow(arrow, page) for arrow in drawn.arrows]
     beside: list[Mark | Word] = [
         *title.draw_frame(page),

@@ -11,7 +11,7 @@ from scanplan.exports.sheet import content, dimensions, title, words
 from scanplan.exports.sheet.labels import LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
-from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page, fill_slots
+from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page
 from scanplan.exports.sheet.shown import Shown, show_measured
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
@@ -143,12 +143,8 @@ def lay_out(
     is_about |= not np.all(plan.rooms["closed"])
     legend = _list_legend(shown, marks, is_about=is_about)
     blocks[1] = len(legend)
-    bar, legend_slots, note_slots, table_slots = fill_slots(page.slots(), blocks) or (
-        [],
-        [],
-        [],
-        [],
-    )
+    places = page.place_tables(blocks) or [[] for _ in blocks]
+    bar, legend_slots, note_slots, table_slots = places
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
         *title.draw_title_block(page, shown.titled, facts),

@@ -139,6 +139,20 @@ class Page:
             high = int((y1 - y0) // Paper.ROW) - 1
             yield Slot(x1 + Paper.ROW / 2, y0 + high * Paper.ROW, high)
 
+    def place_tables(self, blocks: Sequence[int]) -> list[list[Slot]] | None:
+        """Return where the rows of each block go, see `fill_slots`.
+
+        Scale bar and legend go below the plan; what follows goes beside it as a whole, where there
+        is a column that holds it.
+        """
+        slots = [*self.slots()]
+        if self.is_beside:
+            below = fill_slots(iter(slots[:-1]), blocks[:2])
+            beside = fill_slots(iter(slots[-1:]), blocks[2:])
+            if below is not None and beside is not None:
+                return [*below, *beside]
+        return fill_slots(iter(slots), blocks)
+
 
 def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterator[Slot]:
     """Yield the columns left of a title block and above it, in a strip of so many rows."""
@@ -177,7 +191,7 @@ def choose_page(
     low_m, high_m : (2,) float
         Least and greatest x and y of the turned plan.
     blocks : list of int
-        Rows of the tables that go with it; see `fill_slots`.
+        Rows of what goes with it: scale bar, legend, and tables; see `Page.place_tables`.
     least_scale : int
         Scales with a lesser denominator are not taken.
     names : sequence of str
@@ -256,12 +270,15 @@ def _room_mm(page: Page) -> FloatArray:
 def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     """Return a page with as many rows below the plan as its tables need; None if over half.
 
-    Of a table that is broken, each part has so many rows at least.
+    Or if nothing would stand beside the plan where there is a column for it. Of a table that is
+    broken, each part has so many rows at least.
     """
+    if page.is_beside and not any(blocks[2:]):
+        return None
     most = int((page.size_mm[1] / 2) // Paper.ROW)
     for rows in range(TITLE_ROWS, most):
         filled = replace(page, rows=rows)
-        places = fill_slots(filled.slots(), blocks)
+        places = filled.place_tables(blocks)
         if places is not None and all(_is_unbroken(parts, least) for parts in places):
             return filled
     return None
@@ -272,7 +289,7 @@ def _is_unbroken(parts: list[Slot], least: int) -> bool:
     return len(parts) == 1 or all(part.rows >= least for part in parts)
 
 
-def fill_slots(slots: Iterator[Slot], blocks: list[int]) -> list[list[Slot]] | None:
+def fill_slots(slots: Iterator[Slot], blocks: Sequence[int]) -> list[list[Slot]] | None:
     """Return where the rows of each block go, slot by slot; None if there is no room.
 
     Every part of a block begins with a row for its head, which it is counted without. A block goes
