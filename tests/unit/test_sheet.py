@@ -704,6 +704,10 @@ def test_without_a_ceiling_the_table_of_rooms_states_how_high_walls_were_seen():
     assert facts == ["at least 2.50 m"] * 2 and "min. 2.50" in words
     facts, words = stated(plan(floor_z_m=0.0, ceiling_z_m=2.6))
     assert facts == ["2.60 m"] * 2 and "2.60" in words
+    # of a planar scanner no height is known, and no column is empty
+    flat = floorplan_making.walls() | {"z_max_m": np.full(len(floorplan_making.WALLS), 0.2)}
+    facts, words = stated(plan(floor_z_m=0.0, walls=flat))
+    assert facts == ["not seen"] * 2 and words.isdisjoint({"-", "Height m"}) and "Perim. m" in words
 
 
 def test_no_date_is_stated_of_a_clock_that_nobody_set():

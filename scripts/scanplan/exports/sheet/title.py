@@ -36,6 +36,7 @@ _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
 # values that are names, in no language
 _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
 _NAMES += ("Earliest", "Latest")
+_UNSEEN = "-"  # instead of a size that nobody saw
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
 
@@ -263,11 +264,13 @@ def draw_notes(
 def draw_room_table(
     stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale
 ) -> Iterator[Mark | Word]:
-    """Yield the table of rooms: number, name, area, perimeter, height."""
+    """Yield the table of rooms: number, name, area, perimeter, and height where any was seen."""
     of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
     heads = ["No.", "Room", f"Area{of_area}", f"Perim.{of_length}", f"Height{of_length}"]
     names = [locale.say(head) for head in heads]
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
+    if all(of_room[-1] == _UNSEEN for of_room in sizes):
+        names, sizes = names[:-1], [of_room[:-1] for of_room in sizes]
     ends = _end_columns(names, sizes)
     name_mm = _name_width_mm(ends, sizes)
     yield from _heads(slots, names, ends)
@@ -294,7 +297,7 @@ def _list_sizes(stamp: Stamp, locale: Locale) -> list[str]:
         for tag, unit in (("AREA", of_area), ("PERIMETER", of_length))
     ]
     height = facts["HEIGHT"].removesuffix(of_length).replace("at least", "min.")
-    return [*sizes, locale.say(height.replace("not seen", "-"))]
+    return [*sizes, locale.say(height.replace("not seen", _UNSEEN))]
 
 
 def _end_columns(heads: Sequence[str], sizes: Sequence[Sequence[str]]) -> list[float]:
@@ -303,7 +306,7 @@ def _end_columns(heads: Sequence[str], sizes: Sequence[Sequence[str]]) -> list[f
     Those of sizes end at the right, each as wide as what stands in it.
     """
     ends = [Paper.COLUMN - 4.5 * Paper.GAP]
-    for column in (4, 3):
+    for column in range(len(heads) - 1, 2, -1):
         texts = [heads[column], *(of_room[column - 2] for of_room in sizes)]
         width = max(measure_width_mm(text, Letters.SMALL) for text in texts)
         ends.insert(0, ends[0] - width - 2 * Paper.GAP)
