@@ -96,6 +96,16 @@ def test_no_word_lies_on_another(sheet):
     assert len(words) > 20 and over == []
 
 
+def test_a_room_too_narrow_for_its_name_has_its_number_and_area():
+    # 0.7 m wide between two walls, 14 mm on paper
+    walls = [*floorplan_making.WALLS, ((4.85, 0, 4.85, 3), 0.1, 9, 10, "observed")]
+    rooms = floorplan_making.rooms([floorplan_making.ROOMS[0], shapely.box(4.1, 0, 4.8, 3)])
+    rooms["name"][1] = "Room of the servers"
+    drawn = plan(rooms=rooms, walls=floorplan_making.walls(walls))
+    _, narrow = composition.compose_sheet(drawn).stamps
+    assert [word.text for word in narrow.words] == ["1", "2.1 m²"]
+
+
 def test_the_name_of_a_room_keeps_off_furniture_in_its_middle():
     piece = shapely.box(1.9, 1.4, 2.1, 1.6)
     sheet = composition.compose_sheet(plan(furniture=floorplan_making.furniture([piece])))

@@ -119,6 +119,9 @@ def _stamp_places(
         bare = label if title.endswith(f" {label}") else title
         short = Word("stamp", bare, lines[0].place, Letters.MEDIUM)
         yield Candidate([short, lines[1]], 3 + off)
+        if bare != label:
+            numbered = Word("stamp", label, lines[0].place, Letters.MEDIUM, element=element)
+            yield Candidate([numbered, lines[1]], 4 + off)
         yield Candidate([Word("stamp", label, place, Letters.SMALL, element=element)], 5 + off)
     yield from lead_out(Word("stamp", label, middle, Letters.SMALL, element=element), 6)
 
