@@ -20,6 +20,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 import yaml
+from seen_edits import Stretch, cast_rays, find_shared
 
 from helpers.default_settings import SETTINGS
 from scanplan.arrays import array_plan
@@ -29,6 +30,7 @@ from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, OPENED, SHUT, Ch
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.store import registered_scans, tables
+from scanplan.types import BoolArray, FloatArray
 
 Drawing = dict[str, Any]
 TURN_RAD, SHIFT_M = math.radians(40), (3.0, 0.5)
@@ -48,10 +50,11 @@ SURVEYS = (
     *("a_vlp", "a_las", "a_ous", "same_vlp", "same_las", "furn_vlp", "furn_las"),
     *("mix1_vlp", "mix1_las", "mix2_vlp", "mix2_ous", "part_vlp"),
     *("furn2_vlp", "furn2_las", "mix3_vlp", "mix3_las"),
+    *("mix4_vlp", "mix4_las", "mix5_vlp", "mix5_las"),
 )
 """By what was done to the floor (a: nothing yet) and the sensor; `part` is a shorter way.
 
-What is likely enough to be told was chosen on all but the last four.
+What is likely enough to be told was chosen on all but the last eight.
 """
 GROWN = (("part_vlp", "mix1_las"), ("mix1_las", "part_vlp"), ("a_las", "same_vlp"))
 """Surveys of which one plan is made, of a scanner in space and a planar one, nothing changed."""
@@ -60,15 +63,19 @@ TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidenc
 _NEAR_M = 0.4  # of a change from where it was made: a wall moved by 30 cm, and what plans err by
 _SWUNG = {SHUT: GONE, OPENED: NEW}
 """What else a door may be that is shut, or opened."""
-OUTCOMES = _TOLD, _SHUT, _DOUBTED, _MISSED = (
+OUTCOMES = _TOLD, _SHUT, _DOUBTED, _UNSEEN, _MISSED = (
     "told",
     "told as shut or walled up",
     "doubtful",
+    "not seen",
     "missed",
 )
 """What may become of an edit."""
 _ON_M = 0.1  # of a wall that is drawn from the faces of a true one
 _FOUND = 0.5  # of the length of an edit that rows of its verdict cover
+_SEEN = 0.5  # of the length of an edit, seen by both surveys: it ought to be told
+_LEAST_M = 0.1  # that a wall is moved by which ought to be told
+_HALF_M = 0.05  # half of the thickness of walls that are added
 _PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
 _PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
 
@@ -77,13 +84,31 @@ _PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
 class Edit:
     """What was done to a wall or an opening: where it was, or is, in the frame before.
 
-    `counts` says whether it has to be found: by 10 cm or more.
+    `east_m` is how far a wall was moved; `goes_along` says of an opening that it went with its
+    wall.
     """
 
     table: str
     verdict: str
     ends_m: tuple[tuple[float, float], tuple[float, float]]
-    counts: bool = True
+    east_m: float = 0.0
+    goes_along: bool = False
+
+    @property
+    def counts(self) -> bool:
+        """Whether it has to be found: by 10 cm or more."""
+        return self.verdict != MOVED or abs(self.east_m) >= _LEAST_M
+
+    @property
+    def sides(self) -> tuple[int, int]:
+        """From how many sides either survey has to see it, see `seen_edits.find_shared`.
+
+        What closes a door may be a leaf, flush with one side of the wall: both tell.
+        """
+        if self.table == "opening" and self.verdict == GONE:
+            return (0, 0) if self.goes_along else (0, 2)
+        stands = {MOVED: (1, 1), GONE: (1, 0), NEW: (0, 1)}
+        return stands[self.verdict] if self.table == "wall" else (1, 0)
 
     @property
     def line(self) -> shapely.LineString:
@@ -112,32 +137,75 @@ def evaluate(folder: Path, names: Sequence[str]) -> None:
     """Print precision and recall over all pairs of surveys before and after."""
     earlier = [name for name in names if name.startswith("a_")]
     later = [name for name in names if not name.startswith("a_")]
-    totals = [0] * 7
-    by_kind: Counter[tuple[str, str]] = Counter()
+    reached = {name: _list_reached(folder, name) for name in names}
+    judged: list[Judged] = []
     for before in earlier:
         for after in later:
             found = _compare(folder, before, after)
-            counts, became = _judge(found.changes, EDITS[after.partition("_")[0]])
-            totals = [total + count for total, count in zip(totals, counts, strict=True)]
-            by_kind.update((f"{e.table} {e.verdict}", outcome) for e, outcome in became.items())
-            print(f"changes, {before} to {after}: {_say(counts)}", flush=True)
-    print(f"changes, all: {_say(totals)}")
-    for kind in sorted({kind for kind, _ in by_kind}):
-        said = [f"{by_kind[kind, of]} {of}" for of in OUTCOMES if by_kind[kind, of]]
-        print(f"changes, {kind}: {', '.join(said)}")
+            edits = [edit for edit in EDITS[_kind_of(after)] if edit.counts]
+            observable = {
+                edit
+                for edit in edits
+                if find_shared((reached[before][edit], reached[after][edit]), edit.sides) >= _SEEN
+            }
+            judged.append(_judge(found.changes, EDITS[_kind_of(after)], observable))
+            print(f"changes, {before} to {after}: {_say(judged[-1:])}", flush=True)
+    print(f"changes, all: {_say(judged)}")
+    by_kind: Counter[tuple[str, bool, str]] = Counter()
+    for of in judged:
+        by_kind.update(
+            (f"{edit.table} {edit.verdict}", edit in of.observable, outcome)
+            for edit, outcome in of.became.items()
+        )
+    for kind, is_seen in sorted({key[:2] for key in by_kind}):
+        counts = [(by_kind[kind, is_seen, outcome], outcome) for outcome in OUTCOMES]
+        said = ", ".join(f"{n} {outcome}" for n, outcome in counts if n)
+        print(f"changes, {kind}{'' if is_seen else ', not observable'}: {said}")
 
 
-def _say(counts: Sequence[int]) -> str:
-    right, told, found, shut, doubted, made, wrongly_gone = counts
+@dataclass(frozen=True)
+class Judged:
+    """What is right of what was told of a pair, and what became of the edits that count.
+
+    Attributes
+    ----------
+    n_right, n_told, n_wrongly_gone : int
+        Changes of walls and openings that are right, all that are told, and those told as gone
+        that are there.
+    became : dict
+        What of `OUTCOMES` became of each edit.
+    observable : set
+        Edits of which both surveys see enough, by true rays.
+    """
+
+    n_right: int
+    n_told: int
+    n_wrongly_gone: int
+    became: dict[Edit, str]
+    observable: set[Edit]
+
+
+def _say(judged: Sequence[Judged]) -> str:
+    right, told, gone = (
+        sum(getattr(of, name) for of in judged) for name in ("n_right", "n_told", "n_wrongly_gone")
+    )
+    parts = []
+    for name, of_seen in (("observable", True), ("all", False)):
+        outcomes = Counter(
+            outcome
+            for of in judged
+            for edit, outcome in of.became.items()
+            if edit in of.observable or not of_seen
+        )
+        counted = ", ".join(f"{outcomes[key]} {key}" for key in OUTCOMES if outcomes[key])
+        parts.append(f"of {outcomes.total()} edits ({name}) {counted or 'none'}")
     return (
-        f"{right} of {told} told are right; {found} of {made} edits are told, {shut} more as"
-        f" shut or walled up, {doubted} more as doubtful; {wrongly_gone} told as gone that are"
-        " there"
+        f"{right} of {told} told are right; {'; '.join(parts)}; {gone} told as gone that are there"
     )
 
 
-def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> tuple[list[int], dict[Edit, str]]:
-    """Return the counts that `_say` says, and what of `OUTCOMES` became of each edit.
+def _judge(changes: Sequence[Change], edits: Sequence[Edit], observable: set[Edit]) -> Judged:
+    """Return what became of the edits of a pair.
 
     A change of walls and openings is right if an edit of its verdict was made there; a wall that
     moved may also be gone and new.
@@ -149,22 +217,56 @@ def _judge(changes: Sequence[Change], edits: Sequence[Edit]) -> tuple[list[int],
         print(f"  wrong: {change.table} {change.verdict} {change.shape.wkt[:70]} {change.p:.2f}")
     states = [replace(c, verdict=_SWUNG[c.verdict]) for c in changes if c.verdict in _SWUNG]
     shut = [c for c in states if c.p >= LIKELY]
-    ways = list(zip(OUTCOMES[:-1], (likely, shut, changes), strict=True))
-    made = [edit for edit in edits if edit.counts]
+    ways = list(zip(OUTCOMES[:3], (likely, shut, changes), strict=True))
     became = {
-        edit: next((outcome for outcome, found in ways if _is_found(edit, found)), _MISSED)
-        for edit in made
-        if not _is_unseen(edit, changes)
+        edit: next(
+            (outcome for outcome, found in ways if _is_found(edit, found)),
+            _UNSEEN if _is_unseen(edit, changes) else _MISSED,
+        )
+        for edit in edits
+        if edit.counts
     }
     for edit, outcome in became.items():
         if outcome != _TOLD:
-            print(f"  {outcome}: {edit.table} {edit.verdict} {edit.ends_m}")
+            said = "" if edit in observable else ", not observable"
+            print(f"  {outcome}{said}: {edit.table} {edit.verdict} {edit.ends_m}")
     for state in states:
         if not any(_fits(state, edit) for edit in edits):
             print(f"  swung: {state.verdict} {state.shape.wkt[:70]} {state.p:.2f}")
     gone = sum(c.verdict == GONE for c in wrong)
-    outcomes = [sum(of == outcome for of in became.values()) for outcome in OUTCOMES[:-1]]
-    return [len(right), len(likely), *outcomes, len(became), gone], became
+    return Judged(len(right), len(likely), gone, became, observable)
+
+
+def _list_reached(folder: Path, name: str) -> dict[Edit, BoolArray]:
+    """Return which cells of edits the true rays of a survey reach, see `TrueRays.reach`."""
+    rays = cast_rays(folder / f"surveys/{name}.yaml")
+    kind = _kind_of(name)
+    is_later = kind != "a"
+    if is_later:
+        rays = rays.moved(_turn_back)
+    walls = [
+        (shapely.LineString(f["geometry"]["coordinates"]), _own(f)["thickness_m"] / 2)
+        for f in json.loads((folder / "drawings/a.geojson").read_text())["features"]
+        if _kind(f) == "wall"
+    ]
+    listed = EDITS[kind] if is_later else {edit for edits in EDITS.values() for edit in edits}
+    reached = {}
+    for edit in listed:
+        middle = edit.line.centroid
+        half_m = next((half_m for line, half_m in walls if line.distance(middle) < _ON_M), _HALF_M)
+        east_m = np.array([edit.east_m if is_later else 0.0, 0.0])
+        reached[edit] = rays.reach(Stretch(np.array(edit.ends_m) + east_m, half_m))
+    return reached
+
+
+def _turn_back(xy_m: FloatArray) -> FloatArray:
+    """Return places in the frame of later surveys in that of earlier ones, as `_turn` turns."""
+    cosine, sine = math.cos(TURN_RAD), math.sin(TURN_RAD)
+    return (xy_m - SHIFT_M) @ np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _kind_of(name: str) -> str:
+    return name.partition("_")[0]
 
 
 def _fits(change: Change, edit: Edit) -> bool:
@@ -294,54 +396,73 @@ def draw(project: Path, kind: str) -> Drawing:
         "part": _rebuild_first,
         "mix2": _rebuild_second,
         "mix3": _rebuild_third,
+        "mix4": _rebuild_fourth,
+        "mix5": _rebuild_fifth,
     }
     if kind in rebuild:
         rebuild[kind](drawing)
     if kind in _CARRIED:
         _carry_furniture(drawing, _CARRIED[kind])
-    if kind in ("mix1", "mix2", "mix3"):
+    if kind.startswith("mix"):
         drawing["features"] = [f for f in drawing["features"] if _kind(f) != "waypoints"]
     if kind == "part":
         _find(drawing, "waypoints")["geometry"]["coordinates"] = [*_PART_M, *_PART_ON_M]
     return drawing if kind == "a" else _turn(drawing)
 
 
-_CARRIED = {"furn": 3, "furn2": 5, "mix3": 7}
+_CARRIED = {"furn": 3, "furn2": 5, "mix3": 7, "mix4": 11, "mix5": 13}
 """Seeds of where furniture is carried to, by what was done."""
 EDITS: dict[str, tuple[Edit, ...]] = {
     "same": (),
     "furn": (),
     "furn2": (),
     "mix1": (
-        Edit("wall", MOVED, ((6.8, 0.15), (6.8, 4.9))),
-        Edit("wall", MOVED, ((7.4, 7.0), (7.4, 11.85))),
-        # a refrigerator hides most of this part, the other side of a passage
-        Edit("wall", GONE, ((3.2, 7.0), (3.2, 8.0)), counts=False),
+        Edit("wall", MOVED, ((6.8, 0.15), (6.8, 4.9)), 0.1),
+        Edit("wall", MOVED, ((7.4, 7.0), (7.4, 11.85)), 0.3),
+        Edit("wall", GONE, ((3.2, 7.0), (3.2, 8.0))),
         Edit("wall", GONE, ((3.2, 9.2), (3.2, 11.85))),
-        # in this wall
-        Edit("opening", GONE, ((3.2, 8.0), (3.2, 9.2))),
+        Edit("opening", GONE, ((3.2, 8.0), (3.2, 9.2)), goes_along=True),
         Edit("wall", NEW, ((11.3, 1.7), (14.7, 1.7))),
         Edit("opening", GONE, ((13.4, 5.0), (14.2, 5.0))),
         Edit("opening", NEW, ((11.2, 3.15), (11.2, 4.05))),
     ),
     "mix2": (
-        Edit("wall", MOVED, ((3.8, 0.15), (3.8, 4.9)), counts=False),
-        Edit("wall", MOVED, ((11.2, 0.15), (11.2, 4.9)), counts=False),
-        Edit("wall", MOVED, ((12.9, 7.0), (12.9, 11.85))),
+        Edit("wall", MOVED, ((3.8, 0.15), (3.8, 4.9)), 0.05),
+        Edit("wall", MOVED, ((11.2, 0.15), (11.2, 4.9)), 0.02),
+        Edit("wall", MOVED, ((12.9, 7.0), (12.9, 11.85)), 0.1),
         Edit("wall", GONE, ((11.2, 7.0), (11.2, 11.85))),
         Edit("wall", NEW, ((3.25, 9.6), (4.9, 9.6))),
         Edit("opening", GONE, ((1.25, 6.9), (2.15, 6.9))),
         Edit("opening", NEW, ((7.4, 9.05), (7.4, 9.95))),
     ),
     "mix3": (
-        Edit("wall", MOVED, ((3.8, 0.15), (3.8, 4.9))),
-        Edit("wall", MOVED, ((11.2, 7.0), (11.2, 11.85))),
+        Edit("wall", MOVED, ((3.8, 0.15), (3.8, 4.9)), 0.2),
+        Edit("wall", MOVED, ((11.2, 7.0), (11.2, 11.85)), -0.12),
         Edit("wall", GONE, ((4.6, 11.85), (4.6, 10.3))),
-        # across an office, one side alone is to be seen
         Edit("wall", NEW, ((0.15, 1.6), (3.95, 1.6))),
         Edit("wall", NEW, ((15.2, 7.0), (15.2, 9.2))),
         Edit("opening", GONE, ((9.85, 5.0), (10.75, 5.0))),
         Edit("opening", NEW, ((6.8, 3.15), (6.8, 4.05))),
+    ),
+    "mix4": (
+        Edit("wall", MOVED, ((14.8, 0.15), (14.8, 4.9)), 0.1),
+        Edit("wall", MOVED, ((12.9, 7.0), (12.9, 11.85)), -0.15),
+        Edit("wall", GONE, ((3.8, 0.15), (3.8, 4.9))),
+        Edit("opening", GONE, ((3.8, 2.55), (3.8, 3.45)), goes_along=True),
+        Edit("wall", NEW, ((7.5, 9.6), (11.1, 9.6))),
+        Edit("wall", NEW, ((16.0, 11.85), (16.0, 10.2))),
+        Edit("opening", GONE, ((4.95, 6.9), (5.85, 6.9))),
+        Edit("opening", NEW, ((11.2, 8.15), (11.2, 9.05))),
+    ),
+    "mix5": (
+        Edit("wall", MOVED, ((6.8, 0.15), (6.8, 4.9)), 0.15),
+        Edit("wall", MOVED, ((3.2, 9.2), (3.2, 11.85)), 0.1),
+        Edit("wall", MOVED, ((3.2, 7.0), (3.2, 8.0)), 0.1),
+        Edit("wall", GONE, ((12.9, 7.0), (12.9, 11.85))),
+        Edit("wall", NEW, ((0.15, 9.7), (3.25, 9.7))),
+        Edit("wall", NEW, ((15.4, 7.0), (15.4, 8.6))),
+        Edit("opening", GONE, ((11.65, 5.0), (12.55, 5.0))),
+        Edit("opening", NEW, ((3.8, 1.45), (3.8, 2.35))),
     ),
 }
 """What was done to walls and openings."""
@@ -383,6 +504,35 @@ def _rebuild_third(drawing: Drawing) -> None:
     _remove(drawing, "opening", [10.3, 5])
     added = [_wall([[0, 1.6], [4.0, 1.6]]), _wall([[15.2, 6.9], [15.2, 9.2]])]
     drawing["features"] += [*added, _door([6.8, 3.6])]
+
+
+def _rebuild_fourth(drawing: Drawing) -> None:
+    """Move walls by 10 and 15 cm, take one away, add two, wall a door up, break one through."""
+    moved = _find(drawing, "wall", [[14.8, 0], [14.8, 5]])
+    moved["geometry"]["coordinates"] = [[14.9, 0], [14.9, 5]]
+    _find(drawing, "opening", [14.8, 2.4])["geometry"]["coordinates"] = [14.9, 2.4]
+    around = _find(drawing, "wall", [[13.0, 5], [13.0, 3.3], [14.8, 3.3]])
+    around["geometry"]["coordinates"][-1] = [14.9, 3.3]
+    moved = _find(drawing, "wall", [[12.9, 6.9], [12.9, 12]])
+    moved["geometry"]["coordinates"] = [[12.75, 6.9], [12.75, 12]]
+    _remove(drawing, "wall", [[3.8, 0], [3.8, 5]])
+    _remove(drawing, "opening", [3.8, 3.0])
+    _remove(drawing, "opening", [5.4, 6.9])
+    added = [_wall([[7.4, 9.6], [11.2, 9.6]]), _wall([[16.0, 12], [16.0, 10.2]])]
+    drawing["features"] += [*added, _door([11.2, 8.6])]
+
+
+def _rebuild_fifth(drawing: Drawing) -> None:
+    """Move walls by 10 and 15 cm, take one away, add two, wall a door up, break one through."""
+    _find(drawing, "wall", [[6.8, 0], [6.8, 5]])["geometry"]["coordinates"] = [[6.95, 0], [6.95, 5]]
+    moved = _find(drawing, "wall", [[3.2, 6.9], [3.2, 12]])
+    moved["geometry"]["coordinates"] = [[3.3, 6.9], [3.3, 12]]
+    passage = _find(drawing, "opening", [[3.2, 8.0], [3.2, 9.2]])
+    passage["geometry"]["coordinates"] = [[3.3, 8.0], [3.3, 9.2]]
+    _remove(drawing, "wall", [[12.9, 6.9], [12.9, 12]])
+    _remove(drawing, "opening", [12.1, 5])
+    added = [_wall([[0, 9.7], [3.3, 9.7]]), _wall([[15.4, 6.9], [15.4, 8.6]])]
+    drawing["features"] += [*added, _door([3.8, 1.9])]
 
 
 def _carry_furniture(drawing: Drawing, seed: int) -> None:

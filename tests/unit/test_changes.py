@@ -203,6 +203,34 @@ def test_a_wall_that_rays_go_through_is_gone_and_the_other_way_round_new():
     assert [(c.verdict, c.number_a, c.number_b) for c in new] == [(NEW, -1, 4)]
 
 
+@pytest.mark.parametrize(
+    ("top_m", "p_true", "p_wall"), [(5, 0.8, 0.8), (4, 0.8, 0.4), (4, 0.9, 0.6), (4, 0.99, 0.94)]
+)
+def test_what_is_drawn_as_a_wall_may_be_furniture_that_was_carried_unless_walls_hold_it(
+    top_m, p_true, p_wall
+):
+    a, b = survey([], []), survey([(5, 0, 5, top_m)], [])
+    # 5 walls of 100 are built and 30 pieces are carried, but for those that go from wall to wall
+    b.plan.walls["p_true"][:] = 1.0
+    b.plan.walls["p_true"][4] = p_true
+    for first, second in ((a, b), (b, a)):
+        (found,) = told(compare(first, second), "wall")
+        assert found.p == pytest.approx(p_wall, abs=0.01)
+        assert found.p + found.p_furniture > 0.999
+        assert found.is_change == found.is_told == (p_wall > 0.5)
+        assert bool(found.doubt) == (p_wall < verdicts.LIKELY)
+
+
+@pytest.mark.parametrize(("x_m", "verdict"), [(4.95, GONE), (5.05, SAME), (5.1, SAME)])
+def test_what_stands_behind_the_face_of_a_wall_is_not_that_wall(x_m, verdict):
+    # the wall's face is at 5.1 m: poses, ranges and maps err by 0.1 m
+    in_right = [place for place in SENSORS if place[0] > 5.5]
+    a = survey(doors=[], sensors=in_right)
+    b = survey([], [], hidden=[(x_m, 0, x_m, 5)], sensors=in_right)
+    (wall,) = [c for c in compare(a, b) if c.number_a == 4 and c.verdict != NOT_SEEN]
+    assert (wall.verdict, wall.is_change) == (verdict, verdict == GONE)
+
+
 def test_a_door_goes_and_comes_with_the_wall_around_it():
     a, b = survey(), survey([], [])
     for first, second, verdict in ((a, b, GONE), (b, a, NEW)):

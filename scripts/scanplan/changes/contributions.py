@@ -8,10 +8,10 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.changes import wall_changes
 from scanplan.changes.ray_cells import line_between
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import CHANGED, SAME, Change
+from scanplan.changes.wall_cells import list_walls
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
@@ -120,7 +120,7 @@ _Shares = Iterator[tuple[int, BaseGeometry, list[float]]]
 def _share_walls(plan: FloorPlan, surveys: Sequence[Survey]) -> _Shares:
     """Yield which part of the length of each wall rays of each survey end at."""
     answered: dict[int, list[BoolArray]] = {}
-    for wall in wall_changes.list_walls(Survey(plan, surveys[0].sight, surveys[0].motion)):
+    for wall in list_walls(Survey(plan, surveys[0].sight, surveys[0].motion)):
         looks = [s.sight.look_at(wall.line, wall.span_m, wall.half_m) for s in surveys]
         ends = [(of.hits > 0) & (of.passes <= STRAY_SHARE * (of.hits + of.passes)) for of in looks]
         answered.setdefault(wall.number, []).append(np.stack([of.any(axis=1) for of in ends]))

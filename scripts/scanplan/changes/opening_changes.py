@@ -102,7 +102,8 @@ def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
     is_gone = far_m.min(axis=1).max() <= _BESIDE_M
     if not is_gone or not all(part.verdict == GONE and part.is_change for part in beside):
         return alone
-    return replace(alone, verdict=GONE, p=min(part.p for part in beside))
+    least = min(beside, key=lambda part: part.p)
+    return replace(alone, verdict=GONE, p=least.p, p_furniture=least.p_furniture)
 
 
 def _is_known(opening: Opening) -> bool:

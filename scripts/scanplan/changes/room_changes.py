@@ -13,6 +13,7 @@ from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.pairing import pair_most
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import (
+    CARRIED,
     CHANGED,
     CHANGES,
     GONE,
@@ -38,8 +39,8 @@ _HIT = 0.3  # of those that rays end at
 _AS_LARGE = 0.6  # the smaller area of the larger: one piece, seen from other sides
 _CARRIED_M = 3.0  # farther away it may as well be another
 _TABLES = {PIECE: "furniture", COLUMN: "column"}
-# chairs and desks are moved, cupboards are not; columns are as rarely as walls
-_USUAL = {"furniture": 0.3, "column": CHANGED}
+_USUAL = {"furniture": CARRIED, "column": CHANGED}
+"""Columns are moved as rarely as walls."""
 
 
 def compare_rooms(a: Survey, b: Survey, changes: Sequence[Change]) -> list[Change]:
@@ -78,16 +79,19 @@ def _judge_pair(
     apart = overlays.unite_areas(
         [overlays.subtract_areas(area, other), overlays.subtract_areas(other, area)]
     )
-    p_of = [CHANGED]
+    beside = []
     for wall in walls:
         around = overlays.buffer_shapes(_places(wall), _TOUCH_M)
         if overlays.intersect_areas(apart, around).area > _CHANGED_SHARE * area.area:
-            p_of.append(wall.p)
-    p = max(p_of)
-    is_changed = p >= verdicts.LIKELY
-    return Change(
-        "room", number_a, number_b, MOVED if is_changed else SAME, p if is_changed else 1 - p, area
-    )
+            beside.append(wall)
+    return _judge_bounds(Change("room", number_a, number_b, MOVED, CHANGED, area), beside)
+
+
+def _judge_bounds(changed: Change, walls: Sequence[Change]) -> Change:
+    """Return what became of a room beside walls that may have changed: by the likeliest."""
+    most = max(walls, key=lambda wall: (wall.is_change, wall.p), default=changed)
+    told = replace(changed, p=max(most.p, CHANGED), p_furniture=most.p_furniture)
+    return told if most.is_change else replace(told, verdict=SAME, p=1 - told.p, p_furniture=0.0)
 
 
 def _places(wall: Change) -> BaseGeometry:
@@ -107,12 +111,10 @@ def _judge_alone(
         return Change("room", number, -1, NOT_SEEN, math.nan, area)
     # a wall that moved parts the same rooms
     parting = [wall for wall in walls if wall.verdict != MOVED]
-    near = [wall.p for wall in parting if shapely.dwithin(area, wall.shape, _TOUCH_M)]
-    p = max([CHANGED, *near])
-    if p >= verdicts.LIKELY:
-        return Change("room", number, -1, GONE, p, area)
-    doubt = "parted otherwise, by no wall that has surely changed"
-    return Change("room", number, -1, SAME, 1 - p, area, doubt=doubt)
+    near = [wall for wall in parting if shapely.dwithin(area, wall.shape, _TOUCH_M)]
+    found = _judge_bounds(Change("room", number, -1, GONE, CHANGED, area), near)
+    doubt = "parted otherwise, by no wall that has surely changed" * (found.verdict == SAME)
+    return replace(found, doubt=doubt)
 
 
 def compare_pieces(a: Survey, b: Survey, kind: str) -> list[Change]:

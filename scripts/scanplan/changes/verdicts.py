@@ -20,6 +20,8 @@ LIKELY = 0.9
 """A change that is less likely is doubtful: to be verified on site."""
 CHANGED = 0.05
 """Of the elements of a floor, before either survey is asked: few are rebuilt."""
+CARRIED = 0.3
+"""Likewise of furniture: chairs and desks are carried about, cupboards hardly."""
 _PLACE_TELLS = 9.0  # a place tells what is right nine times as often as what is wrong
 MOST_PLACES = 6
 """More err alike, by one map."""
@@ -54,6 +56,8 @@ class Change:
         How far b lies from a, and what that errs by; NaN where not measured.
     doubt : str
         What else it may be.
+    p_furniture : float
+        How likely the same has become of a piece of furniture that was drawn as a wall.
     """
 
     table: str
@@ -68,16 +72,18 @@ class Change:
     shift_m: float = math.nan
     sigma_m: float = math.nan
     doubt: str = ""
+    p_furniture: float = 0.0
 
     @property
     def is_change(self) -> bool:
-        """Whether it is a change of the building that is likely."""
-        return self.verdict in CHANGES and self.p >= LIKELY
+        """Whether it is a change that is likely, and of the building rather than of furniture."""
+        is_likely = self.p + self.p_furniture >= LIKELY and self.p > self.p_furniture
+        return self.verdict in CHANGES and is_likely
 
     @property
     def is_told(self) -> bool:
         """Whether it is that, or a door that is likely shut now, or opened."""
-        return self.verdict in (*CHANGES, *STATES) and self.p >= LIKELY
+        return self.is_change or (self.verdict in STATES and self.p >= LIKELY)
 
     def turned(self) -> "Change":
         """Return it as seen from the other survey: what is gone there is new here."""
@@ -107,6 +113,28 @@ def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:
     net = max(-MOST_PLACES, min(MOST_PLACES, n_for - n_against))
     odds = usual / (1 - usual) * _PLACE_TELLS**net
     return odds / (1 + odds)
+
+
+def rate_wall(p_wall: float, p_built_in: float) -> float:
+    """Return how likely it is a wall that is gone or new, and not furniture.
+
+    Furniture is carried about more often than walls are built, but for what goes from wall to wall.
+
+    Parameters
+    ----------
+    p_wall : float
+        How likely it is one, before anything is known of the other survey.
+    p_built_in : float
+        How likely it goes from wall to wall.
+
+    Examples
+    --------
+    >>> round(rate_wall(0.8, 0.0), 2), round(rate_wall(0.8, 1.0), 2)
+    (0.4, 0.8)
+    """
+    carried = p_built_in * CHANGED + (1 - p_built_in) * CARRIED
+    wall, furniture = p_wall * CHANGED, (1 - p_wall) * carried
+    return wall / (wall + furniture)
 
 
 def rate_shift(shift_m: float, sigma_m: float, n_shown: int, wrong: float = _WRONG) -> float:

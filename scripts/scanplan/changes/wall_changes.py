@@ -10,59 +10,22 @@ import shapely.affinity
 
 from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.face_shifts import FaceShifts
-from scanplan.changes.ray_cells import CELL_M, Later
+from scanplan.changes.ray_cells import AT_M, CELL_M, Later
+from scanplan.changes.scan_plane import are_one_plane
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.wall_cells import Wall, list_walls
 from scanplan.geometry.lines import Line
-from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.plan.floorplan import centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _LEAST_M = 0.3  # of a stretch: a shorter one may be a jamb, or what ends err by
 _OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the other survey has it
-_MEETS_M = 0.3  # of a wall's end and another: as far as a plan draws them apart
 _LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what they err by
-
-_BOW_M = 0.05  # of a piece of a curved wall: half of what rays are off by at a wall
 _COSINE = math.cos(math.radians(20))  # of faces of one piece: those of others are turned
 
-_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT, _UNKNOWN = range(6)
-"""What another survey shows of a cell of a wall."""
-
-
-@dataclass(frozen=True, eq=False)
-class Wall:
-    """A wall in the common frame, or a piece of a curved one, in cells along its line.
-
-    Attributes
-    ----------
-    number : int
-    line : Line
-        Its middle, or its one face, from its first end on.
-    half_m : float
-        Half of its thickness; 0 where that is not known.
-    n_cells : int
-    p_true : float
-        How likely it is a wall.
-    is_built_in : bool
-        Whether other walls meet both its ends, as of no cupboard.
-    """
-
-    number: int
-    line: Line
-    half_m: float
-    n_cells: int
-    p_true: float
-    is_built_in: bool
-
-    @property
-    def span_m(self) -> tuple[float, float]:
-        """From where to where along its line."""
-        return 0.0, self.n_cells * CELL_M
-
-    @property
-    def middle_m(self) -> FloatArray:
-        """The middles of its cells along its line, (c,) float64."""
-        return (np.arange(self.n_cells) + 0.5) * CELL_M
+_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT, _UNKNOWN, _BEHIND = range(7)
+"""What another survey shows of a cell of a wall; `_BEHIND` of a stretch that rays end behind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,41 +100,8 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             if kind == _MATCHED and not is_rest:
                 yield from _judge_shift(wall, cells, found, others)
             elif kind != _IN_OPENING:
-                yield _judge_rays(wall, kind, cells, compared)
-
-
-def list_walls(survey: Survey) -> Iterator[Wall]:
-    """Yield the walls of a survey in the common frame, curved ones in pieces that hardly bow."""
-    plan = survey.plan
-    left_m, right_m = plan.sides_m
-    rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
-    for row, number in enumerate(plan.walls["wall"].tolist()):
-        is_thick = bool(plan.thick[row])
-        # of one seen from one side the line is that of its face
-        half_m = float(left_m[row] + right_m[row]) / 2 if is_thick else 0.0
-        is_built_in = _is_built_in(plan, row)
-        for ends_m in survey.motion.move(_cut_lines(plan, row)):
-            line, length_m = ray_cells.line_between(ends_m)
-            n_cells = ray_cells.count_cells((0.0, length_m))
-            yield Wall(number, line, half_m, n_cells, float(rated[row]), is_built_in)
-
-
-def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
-    """Return the line (1, 2, 2) of a wall; of a curved one pieces (k, 2, 2) that hardly bow."""
-    shapes = plan.wall_shapes
-    if not shapes.is_bent[row]:
-        return shapes.lines_m[row][None]
-    longest_m = math.sqrt(8 * _BOW_M * float(plan.walls["arc_radius_m"][row]))
-    n_pieces = math.ceil(float(plan.lengths_m[row]) / longest_m)
-    corners_m, _ = shapes.place_along(row, np.linspace(0, 1, n_pieces + 1))
-    return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
-
-
-def _is_built_in(plan: FloorPlan, row: int) -> bool:
-    """Return whether a wall ends at other walls on both sides."""
-    ends = shapely.points(centrelines_m(plan.walls)[row])
-    others = np.delete(plan.bodies, row)
-    return all(shapely.dwithin(end, others, _MEETS_M).any() for end in ends)
+                is_behind = kind == _HIT and _lies_behind(wall, cells, (of, by))
+                yield _judge_rays(wall, _BEHIND if is_behind else kind, cells, compared)
 
 
 def _cover(wall: Wall, openings_m: FloatArray) -> BoolArray:
@@ -302,21 +232,48 @@ def _rate_both(wall: Wall, other: Wall | None) -> float:
     return choose(wall.p_true, other.p_true)
 
 
+def _lies_behind(wall: Wall, cells: slice, surveys: tuple[Survey, Survey]) -> bool:
+    """Return whether what rays of a second survey end at is not what those of the first ended at.
+
+    From each side that both look from it lies farther behind than poses, ranges and maps err by.
+    """
+    if not are_one_plane(*(s.sight.plane for s in surveys)):
+        return False
+    reach_m = 2 * (wall.half_m + AT_M)
+    shifts_m = []
+    for side in (1, -1):
+        normal = side * wall.line.normal
+        face = Line(wall.line.centre + wall.half_m * normal, normal)
+        low_m, high_m = sorted((side * cells.start * CELL_M, side * cells.stop * CELL_M))
+        places = [s.sight.place_returns(face, (low_m, high_m), reach_m) for s in surveys]
+        shifts_m.append(ray_cells.measure_shift(*places))
+    known_m = [shift_m for shift_m in shifts_m if math.isfinite(shift_m)]
+    return len(known_m) > 0 and max(known_m) < -AT_M
+
+
 def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
     is_of_it = np.zeros(wall.n_cells, bool)
     is_of_it[cells] = True
     n_passing, n_ending = later.count_places(is_of_it)
+    if kind == _BEHIND:
+        # they went through its face, all of them
+        n_passing, n_ending = n_passing + n_ending, 0
     p = verdicts.rate_places(n_passing, n_ending)
     shape = _shape(wall, cells)
-    if kind in (_PASSED, _MATCHED) and p > 0.5:
-        return Change("wall", wall.number, -1, GONE, p * wall.p_true, shape)
+    if kind in (_PASSED, _BEHIND, _MATCHED) and p > 0.5:
+        # rays tell that it has changed, its plan whether it is a wall
+        p_wall = verdicts.rate_wall(wall.p_true, wall.rate_built_in(cells))
+        is_sure = p * p_wall >= LIKELY
+        doubt = "" if is_sure else f"wall {p * p_wall:.2f}, furniture {p * (1 - p_wall):.2f}"
+        gone = Change("wall", wall.number, -1, GONE, p * p_wall, shape, doubt=doubt)
+        return replace(gone, p_furniture=p * (1 - p_wall))
     if kind == _LOWERED:
         # a window may be broken through as well, over what stands
         n_over = len(np.unique(later.over[is_of_it[later.over[:, 0]], 2]))
         p = verdicts.rate_places(n_over, 0) * wall.p_true / 2
         doubt = "what stands there now is lower"
         return Change("wall", wall.number, -1, GONE, p, shape, doubt=doubt)
-    if kind == _HIT:
+    if kind in (_HIT, _BEHIND):
         return Change("wall", wall.number, -1, SAME, 1 - p, shape)
     return Change("wall", wall.number, -1, NOT_SEEN, math.nan, shape)
 

@@ -95,7 +95,9 @@ def compose_compared_sheet(
     paths = [path[:, :2] for mark in marks for path in mark.paths]
     turned = np.concatenate(paths) @ rotation(turn_deg).T
     blocks = [6, len(legend), max(len(listed), 1)]
-    page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, blocks)
+    # the longest block ends a row above the frame
+    higher = [rows + 1 for rows in blocks]
+    page = choose_page(turned.min(axis=0), turned.max(axis=0), turn_deg, higher)
     page = replace(page, locale=locale)
     bar, legend_slots, table_slots = page.place_tables(blocks) or ([], [], [])
     marks += [_draw_arrow(arrow, page) for arrow in drawn.arrows]

@@ -1,0 +1,101 @@
+"""Walls of a survey in cells along their lines, as another survey is asked about them."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scanplan.changes import ray_cells
+from scanplan.changes.ray_cells import CELL_M
+from scanplan.changes.surveys import Survey
+from scanplan.geometry.lines import Line
+from scanplan.plan.floorplan import FloorPlan, centrelines_m
+from scanplan.types import FloatArray
+
+_MEETS_M = 0.3  # of a wall's end and another: as far as a plan draws them apart
+_BOW_M = 0.05  # of a piece of a curved wall: half of what rays are off by at a wall
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A wall in the common frame, or a piece of a curved one, in cells along its line.
+
+    Attributes
+    ----------
+    number : int
+    line : Line
+        Its middle, or its one face, from its first end on.
+    half_m : float
+        Half of its thickness; 0 where that is not known.
+    n_cells : int
+    p_true : float
+        How likely it is a wall.
+    p_met : (float, float)
+        How likely what meets its two ends is a wall; 0 where nothing does.
+    """
+
+    number: int
+    line: Line
+    half_m: float
+    n_cells: int
+    p_true: float
+    p_met: tuple[float, float]
+
+    @property
+    def is_built_in(self) -> bool:
+        """Whether others meet both its ends, as of no cupboard."""
+        return min(self.p_met) > 0
+
+    def rate_built_in(self, cells: slice) -> float:
+        """Return how likely a stretch of it goes from wall to wall."""
+        left_m = max(cells.start, self.n_cells - cells.stop) * CELL_M
+        return math.prod(self.p_met) if left_m <= _MEETS_M else 0.0
+
+    @property
+    def span_m(self) -> tuple[float, float]:
+        """From where to where along its line."""
+        return 0.0, self.n_cells * CELL_M
+
+    @property
+    def middle_m(self) -> FloatArray:
+        """The middles of its cells along its line, (c,) float64."""
+        return (np.arange(self.n_cells) + 0.5) * CELL_M
+
+
+def list_walls(survey: Survey) -> Iterator[Wall]:
+    """Yield the walls of a survey in the common frame, curved ones in pieces that hardly bow."""
+    plan = survey.plan
+    left_m, right_m = plan.sides_m
+    rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
+    for row, number in enumerate(plan.walls["wall"].tolist()):
+        is_thick = bool(plan.thick[row])
+        # of one seen from one side the line is that of its face
+        half_m = float(left_m[row] + right_m[row]) / 2 if is_thick else 0.0
+        p_met = _rate_met(plan, row, rated)
+        for ends_m in survey.motion.move(_cut_lines(plan, row)):
+            line, length_m = ray_cells.line_between(ends_m)
+            n_cells = ray_cells.count_cells((0.0, length_m))
+            yield Wall(number, line, half_m, n_cells, float(rated[row]), p_met)
+
+
+def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
+    """Return the line (1, 2, 2) of a wall; of a curved one pieces (k, 2, 2) that hardly bow."""
+    shapes = plan.wall_shapes
+    if not shapes.is_bent[row]:
+        return shapes.lines_m[row][None]
+    longest_m = math.sqrt(8 * _BOW_M * float(plan.walls["arc_radius_m"][row]))
+    n_pieces = math.ceil(float(plan.lengths_m[row]) / longest_m)
+    corners_m, _ = shapes.place_along(row, np.linspace(0, 1, n_pieces + 1))
+    return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
+
+
+def _rate_met(plan: FloorPlan, row: int, rated: FloatArray) -> tuple[float, float]:
+    """Return how likely what meets the ends of a wall is a wall, 0 where nothing does."""
+    ends = shapely.points(centrelines_m(plan.walls)[row])
+    others, p_others = np.delete(plan.bodies, row), np.delete(rated, row)
+    begin, end = (
+        float(p_others[shapely.dwithin(of, others, _MEETS_M)].max(initial=0.0)) for of in ends
+    )
+    return begin, end
