@@ -67,6 +67,9 @@ class Stub:
         rows = [of[of[:, 0] < n] for of in (self.seen.passing, self.seen.ending)]
         return ray_cells.Looks(self.seen.hits[:n], self.seen.passes[:n], *rows)
 
+    def place_returns(self, line, span_m, reach_m):
+        return np.zeros((ray_cells.count_cells(span_m), self.seen.hits.shape[1]))
+
 
 def told(changes, table, *wanted):
     return [c for c in changes if c.table == table and c.verdict in (wanted or verdicts.CHANGES)]

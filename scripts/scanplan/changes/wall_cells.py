@@ -33,7 +33,7 @@ class Wall:
     p_true : float
         How likely it is a wall.
     p_met : (float, float)
-        How likely what meets its two ends is a wall; 0 where nothing does.
+        How likely what meets its two ends are walls; 0 where no two others do.
     """
 
     number: int
@@ -45,7 +45,7 @@ class Wall:
 
     @property
     def is_built_in(self) -> bool:
-        """Whether others meet both its ends, as of no cupboard."""
+        """Whether two others meet its ends, as of no cupboard."""
         return min(self.p_met) > 0
 
     def rate_built_in(self, cells: slice) -> float:
@@ -92,10 +92,14 @@ def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
 
 
 def _rate_met(plan: FloorPlan, row: int, rated: FloatArray) -> tuple[float, float]:
-    """Return how likely what meets the ends of a wall is a wall, 0 where nothing does."""
-    ends = shapely.points(centrelines_m(plan.walls)[row])
-    others, p_others = np.delete(plan.bodies, row), np.delete(rated, row)
-    begin, end = (
-        float(p_others[shapely.dwithin(of, others, _MEETS_M)].max(initial=0.0)) for of in ends
-    )
-    return begin, end
+    """Return how likely what meets the ends of a wall is a wall, 0 where nothing does.
+
+    Of two others: by one alone a short piece has both ends.
+    """
+    others = np.delete(np.arange(len(rated)), row)
+    met = [
+        others[shapely.dwithin(end, plan.bodies[others], _MEETS_M)]
+        for end in shapely.points(centrelines_m(plan.walls)[row])
+    ]
+    both = [(float(rated[i]), float(rated[j])) for i in met[0] for j in met[1] if i != j]
+    return max(both, key=math.prod, default=(0.0, 0.0))

@@ -100,7 +100,7 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             if kind == _MATCHED and not is_rest:
                 yield from _judge_shift(wall, cells, found, others)
             elif kind != _IN_OPENING:
-                is_behind = kind == _HIT and _lies_behind(wall, cells, (of, by))
+                is_behind = kind in (_HIT, _UNKNOWN) and _lies_behind(wall, cells, (of, by))
                 yield _judge_rays(wall, _BEHIND if is_behind else kind, cells, compared)
 
 
@@ -235,20 +235,19 @@ def _rate_both(wall: Wall, other: Wall | None) -> float:
 def _lies_behind(wall: Wall, cells: slice, surveys: tuple[Survey, Survey]) -> bool:
     """Return whether what rays of a second survey end at is not what those of the first ended at.
 
-    From each side that both look from it lies farther behind than poses, ranges and maps err by.
+    From where both look it lies farther behind than poses, ranges and two maps err by.
     """
     if not are_one_plane(*(s.sight.plane for s in surveys)):
         return False
     reach_m = 2 * (wall.half_m + AT_M)
-    shifts_m = []
+    returns_m: tuple[list[FloatArray], list[FloatArray]] = ([], [])
     for side in (1, -1):
         normal = side * wall.line.normal
         face = Line(wall.line.centre + wall.half_m * normal, normal)
         low_m, high_m = sorted((side * cells.start * CELL_M, side * cells.stop * CELL_M))
-        places = [s.sight.place_returns(face, (low_m, high_m), reach_m) for s in surveys]
-        shifts_m.append(ray_cells.measure_shift(*places))
-    known_m = [shift_m for shift_m in shifts_m if math.isfinite(shift_m)]
-    return len(known_m) > 0 and max(known_m) < -AT_M
+        for of, survey in zip(returns_m, surveys, strict=True):
+            of.append(survey.sight.place_returns(face, (low_m, high_m), reach_m))
+    return ray_cells.measure_shift(*(np.concatenate(of) for of in returns_m)) < -AT_M
 
 
 def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
