@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from scanplan.changes.verdicts import CHANGES, STATES, Change
+from scanplan.changes.verdicts import CHANGES, LIKELY, STATES, Change
 
 
 class ChangeWords(NamedTuple):
@@ -13,7 +13,7 @@ class ChangeWords(NamedTuple):
     Attributes
     ----------
     element : str
-        Its kind, and its number in either plan.
+        Its kind, what else it may be, and its number in either plan.
     verdict : str
         With a question mark where it is doubtful.
     by : str
@@ -48,4 +48,8 @@ def say_change(
         lengths_m = (abs(change.shift_m), change.sigma_m)
         by = " ± ".join(say(f"{per_m * m:.1f}") for m in lengths_m if math.isfinite(m))
     verdict = f"{say(change.verdict)}{'?' if is_doubtful else ''}"
-    return ChangeWords(f"{say(kind)} {number}", verdict, by, say(f"{change.p:.2f}"))
+    element = f"{say(kind)} {number}"
+    if change.is_change and change.p < LIKELY:
+        # that it has changed is sure, what it is is not
+        element += f" ({say('furniture')}?)"
+    return ChangeWords(element, verdict, by, say(f"{change.p:.2f}"))
