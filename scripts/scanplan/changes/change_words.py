@@ -13,7 +13,7 @@ class ChangeWords(NamedTuple):
     Attributes
     ----------
     element : str
-        Its kind, what else it may be, and its number in either plan.
+        Its kind, with a question mark where that is doubtful, and its number in either plan.
     verdict : str
         With a question mark where it is doubtful.
     by : str
@@ -48,8 +48,6 @@ def say_change(
         lengths_m = (abs(change.shift_m), change.sigma_m)
         by = " ± ".join(say(f"{per_m * m:.1f}") for m in lengths_m if math.isfinite(m))
     verdict = f"{say(change.verdict)}{'?' if is_doubtful else ''}"
-    element = f"{say(kind)} {number}"
-    if change.is_change and change.p < LIKELY:
-        # that it has changed is sure, what it is is not
-        element += f" ({say('furniture')}?)"
-    return ChangeWords(element, verdict, by, say(f"{change.p:.2f}"))
+    # that it has changed is sure, what it is is not
+    of_kind = "?" if change.is_change and change.p < LIKELY else ""
+    return ChangeWords(f"{say(kind)}{of_kind} {number}", verdict, by, say(f"{change.p:.2f}"))

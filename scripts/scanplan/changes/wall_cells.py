@@ -51,7 +51,7 @@ class Wall:
     def rate_built_in(self, cells: slice) -> float:
         """Return how likely a stretch of it goes from wall to wall."""
         left_m = max(cells.start, self.n_cells - cells.stop) * CELL_M
-        return math.prod(self.p_met) if left_m <= _MEETS_M else 0.0
+        return math.prod(self.p_met) if left_m <= _MEETS_M + CELL_M / 2 else 0.0
 
     @property
     def span_m(self) -> tuple[float, float]:

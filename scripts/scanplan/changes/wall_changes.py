@@ -100,7 +100,8 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             if kind == _MATCHED and not is_rest:
                 yield from _judge_shift(wall, cells, found, others)
             elif kind != _IN_OPENING:
-                is_behind = kind in (_HIT, _UNKNOWN) and _lies_behind(wall, cells, (of, by))
+                is_asked = kind not in (_PASSED, _LOWERED)
+                is_behind = is_asked and _lies_behind(wall, cells, (of, by))
                 yield _judge_rays(wall, _BEHIND if is_behind else kind, cells, compared)
 
 
@@ -262,10 +263,10 @@ def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
     if kind in (_PASSED, _BEHIND, _MATCHED) and p > 0.5:
         # rays tell that it has changed, its plan whether it is a wall
         p_wall = verdicts.rate_wall(wall.p_true, wall.rate_built_in(cells))
-        is_sure = p * p_wall >= LIKELY
-        doubt = "" if is_sure else f"wall {p * p_wall:.2f}, furniture {p * (1 - p_wall):.2f}"
-        gone = Change("wall", wall.number, -1, GONE, p * p_wall, shape, doubt=doubt)
-        return replace(gone, p_furniture=p * (1 - p_wall))
+        p_wall *= p
+        doubt = "" if p_wall >= LIKELY else f"wall {p_wall:.2f}, furniture {p - p_wall:.2f}"
+        gone = Change("wall", wall.number, -1, GONE, p_wall, shape, doubt=doubt)
+        return replace(gone, p_furniture=p - p_wall)
     if kind == _LOWERED:
         # a window may be broken through as well, over what stands
         n_over = len(np.unique(later.over[is_of_it[later.over[:, 0]], 2]))
