@@ -98,7 +98,7 @@ def test_repeated_as_the_literal_algorithm_by_the_same_samples(model, size):
     steepest = {"line": np.cos, "plane": np.sin}[model](np.deg2rad(15))
     expected = [len(points_of) for _, axis, points_of in models if abs(axis[2]) <= steepest]
     rows = thesis_ransac.extract_repeatedly(3, points, points, settings)
-    assert [row[6] for row in rows] == expected
+    assert [row.n_points for row in rows] == expected
     assert len(expected) >= 3
 
 

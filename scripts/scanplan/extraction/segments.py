@@ -150,7 +150,8 @@ def describe_run(
     foot_m = offset_m * line.normal
     start_m, end_m = (foot_m + along_m * line.direction for along_m in run_m)
     rmse_m = np.sqrt(np.mean((inside[:, :2] @ line.normal - offset_m) ** 2))
-    return SegmentRow(*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
+    values = (*start_m, *end_m, *line.normal, len(inside), rmse_m, z_min_m, z_max_m)
+    return SegmentRow._make(values)
 
 
 def collect_segments(
