@@ -44,25 +44,40 @@ CORNERS = [(0, 0), (0, DEPTH_M), (LENGTH_M, DEPTH_M), (LENGTH_M, 0)]
 WALLS = [wall(a, b) for a, b in zip(CORNERS, CORNERS[1:] + CORNERS[:1], strict=True)]
 
 
+def sides(shape):
+    """Return the sides (n, 2, 2) of areas and lines."""
+    lines = [getattr(part, "exterior", part) for part in shapely.get_parts(shape)]
+    corners_m = [shapely.get_coordinates(line) for line in lines if not line.is_empty]
+    return np.concatenate([np.stack([at_m[:-1], at_m[1:]], axis=1) for at_m in corners_m])
+
+
+def cross(one, other):
+    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+
+
+def cast(place_m, direction, stops_m):
+    """Return how far (n,) from a place sides end rays of some directions (n, 2), inf if none."""
+    along_m, to_m = stops_m[:, 1] - stops_m[:, 0], stops_m[:, 0] - place_m
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sine = cross(direction[:, None], along_m)
+        far_m, share = cross(to_m, along_m) / sine, cross(to_m, direction[:, None]) / sine
+    return np.where((far_m > 0) & (share >= 0) & (share <= 1), far_m, np.inf).min(axis=1)
+
+
 def look(pane, things):
     """Return the rays of a scan from each place of the way, with noise of 5 mm."""
     rng = np.random.default_rng(1)
     rad = np.radians(np.arange(0.25, 360, 0.5))
+    direction = np.column_stack([np.cos(rad), np.sin(rad)])
     is_square = np.abs(np.sin(rad)) >= np.cos(ANSWERS_RAD)
-    solid = shapely.unary_union([ROOM, things])
+    solid_m = sides(shapely.unary_union([ROOM, things]))
+    square_m = np.concatenate([solid_m, sides(pane)]) if not pane.is_empty else solid_m
     scans, sensors_m = [], {}
     for number, place in enumerate(np.array(WAY_M)):
-        far_m = place + 20 * np.column_stack([np.cos(rad), np.sin(rad)])
-        ways_m = np.stack([np.broadcast_to(place, far_m.shape), far_m], axis=1)
-        beams = np.asarray(shapely.linestrings(ways_m), object)
-        ends_m = np.full((len(rad), 2), np.inf)
-        for rows, stops in ((~is_square, solid), (is_square, solid.union(pane))):
-            met = shapely.intersection(beams[np.flatnonzero(rows)], stops)
-            hits_m, beam = shapely.get_coordinates(met, return_index=True)
-            # of what a beam meets the nearest comes last, and stays
-            order = np.argsort(-np.hypot(*(hits_m - place).T), kind="stable")
-            ends_m[np.flatnonzero(rows)[beam[order]]] = hits_m[order]
-        ends_m += rng.normal(0, 0.005, ends_m.shape)
+        far_m = np.where(
+            is_square, cast(place, direction, square_m), cast(place, direction, solid_m)
+        )
+        ends_m = place + far_m[:, None] * direction + rng.normal(0, 0.005, (len(rad), 2))
         sensors_m[number] = np.array([*place, 0.0])
         scans.append((number, np.column_stack([ends_m, np.zeros(len(ends_m))])))
     return ray_set.gather_rays(scans, sensors_m, planar=True)

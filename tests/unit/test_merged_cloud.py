@@ -1,13 +1,14 @@
 """Clouds without rays: storeys by height, and what places on a floor see of them."""
 
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from helpers import cloud_files, e57_making, ptx_making, refusals
 from helpers.las_making import write_las
-from scanplan.project import dataset_files
+from scanplan.project import dataset_entries, dataset_files
 from scanplan.recordings import frame_edges
 from scanplan.recordings.merged import merged_cloud, point_files
 from scanplan.recordings.motion import pose_kind
@@ -149,6 +150,11 @@ def test_little_memory_makes_cubes_larger(tmp_path, monkeypatch, caplog):
         _, seen, _ = read(path)
     assert "cubes of 6 cm" in caplog.text
     assert all(len(xyz_m) > 1000 for xyz_m in seen)
+
+
+@pytest.mark.parametrize("suffix", dataset_entries.MERGED_SUFFIXES)
+def test_every_format_of_merged_clouds_has_a_reader(suffix):
+    assert len(point_files.list_sources([Path(f"flat{suffix}")])) == 1
 
 
 @pytest.mark.parametrize("suffix", [".las", ".laz", ".LAZ", ".ply", ".pcd"])

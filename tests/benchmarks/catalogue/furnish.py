@@ -98,9 +98,10 @@ def along(
     for place_m in places:
         box = against(inner, side, place_m, size_m, gap_m)
         front = against(inner, side, place_m, size_m, gap_m + size_m[1], front_m)
-        fits = _is_within(box, inner) and _is_within(front, inner)
-        others_clear = not any(o.intersects(rectangle(front).buffer(-0.01)) for o in plan.taken)
-        if fits and others_clear and plan.is_free(rectangle(box)):
+        if not (_is_within(box, inner) and _is_within(front, inner)):
+            continue
+        before = rectangle(front).buffer(-0.01)
+        if not any(o.intersects(before) for o in plan.taken) and plan.is_free(rectangle(box)):
             if legs:
                 _draw_legged(plan, box, height_m, kind)
             else:
