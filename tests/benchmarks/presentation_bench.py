@@ -107,7 +107,7 @@ def _narrow_by_frames(true: TrueOpenings, file: Path) -> TrueOpenings:
 def _measure(
     tables: Mapping[str, Columns], placed: Placed, clear: TrueOpenings
 ) -> dict[str, float]:
-    scored = plan_scores.score_plan(tables, placed.motion, placed.scene, placed.seen)
+    scored = plan_scores.score_plan(tables, placed.motion, placed.scene, placed.known_sight)
     plan, scene = drawn_plan.place_plan(tables, placed.motion), placed.scene
     true_faces_m = np.concatenate([scene.inner_m, scene.outer_m])
     off_deg, lengths_m, _, _ = _pair(plan.faces_m, true_faces_m)

@@ -125,7 +125,7 @@ def test_the_sheet_says_where_its_frame_lies():
     said = state_frame(SITE, None)
     facts = SheetFacts(frame=said)
     words = " ".join(word.text for word in paper_words(compose_sheet(PLAN, facts)))
-    assert "EPSG:25832: origin E 513000.250 N 5402000.500, x axis 30.0000° from E" in words
+    assert "EPSG:25832: origin E 513000.250 N 5402000.500, x axis 30.0000° from E, scale 1" in words
     assert state_frame(NOWHERE, None) == ""
 
 

@@ -102,7 +102,8 @@ def state_frame(site: Site, measured: GeoReference | None, locale: Locale = ENGL
     """Return in words where a map lies on earth, and how well reference points agree with it."""
     if not site.is_placed:
         return ""
-    place = f"origin E {site.east_m:.3f} N {site.north_m:.3f}, x axis {site.turn_deg:.4f}° from E"
+    origin = f"origin E {site.east_m:.3f} N {site.north_m:.3f}"
+    place = f"{origin}, x axis {site.turn_deg:.4f}° from E, scale 1"
     if measured is None:
         return f"{site.crs}: {place}"
     return f"{site.crs}: {place}; residual {locale.deviation(measured.residual_m)}"
