@@ -14,6 +14,7 @@ _CEILING_SHARE = 0.2  # in one layer of 5 cm: walls alone fill all layers alike
 _LEAST_STOREY_M = 2.1  # clear height; a lower one is no storey that people stand in
 _USUAL_STOREY_M = 2.5  # of dwellings and offices, where nothing else is known
 _PROMINENT = 1.5  # times what walls alone leave in layers that hold no level
+_ABOVE_FLOOR, _BELOW_CEILING = 2, 5  # layers that show what walls alone leave
 
 
 def find_floor_z(z_m: FloatArray) -> float:
@@ -66,8 +67,9 @@ def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
     """Return the heights of floor and ceiling, NaN where none was seen.
 
     A floor or ceiling is the fullest layer of 5 cm within half a metre of the lowest or highest
-    points, if it and the fuller one beside it hold half as many again as two of the next 25 cm do:
-    walls alone fill all layers alike.
+    points, if it and the fuller one beside it hold half as many again as two of the next layers do,
+    10 cm above a floor and 25 cm below a ceiling: walls alone fill them alike, but the more the
+    nearer they are to the height of a sensor, which may be carried as low as 0.4 m.
 
     Parameters
     ----------
@@ -80,13 +82,14 @@ def find_floor_and_ceiling(z_m: FloatArray) -> tuple[float, float]:
     """
     z_m = np.asarray(z_m, float)
     z_m = z_m[np.isfinite(z_m)]
-    floor_z_m, ceiling_z_m = _lowest_level(z_m), -_lowest_level(-z_m)
+    floor_z_m, ceiling_z_m = _lowest_level(z_m, _ABOVE_FLOOR), -_lowest_level(-z_m, _BELOW_CEILING)
     if ceiling_z_m - floor_z_m < 2 * SEARCH_M:
         return floor_z_m, np.nan
     return floor_z_m, ceiling_z_m
 
 
-def _lowest_level(z_m: FloatArray) -> float:
+def _lowest_level(z_m: FloatArray, n_beyond: int) -> float:
+    """Return the height of the lowest level, held against so many layers above it; NaN: none."""
     if len(z_m) < _LEAST_POINTS:
         return np.nan
     low_m = z_m.min()
@@ -97,7 +100,7 @@ def _lowest_level(z_m: FloatArray) -> float:
     at = first + int(counts[first : first + n].argmax())
     # a level may lie across the border of two layers
     level = counts[at] + max(counts[max(at - 1, 0) : at].sum(), counts[at + 1 : at + 2].sum())
-    beyond = counts[at + 2 : at + 2 + n // 2]
+    beyond = counts[at + 2 : at + 2 + n_beyond]
     if len(beyond) and level < _PROMINENT * 2 * beyond.mean():
         return np.nan
     middle_m = low_m + (at + 0.5) * CELL_M
