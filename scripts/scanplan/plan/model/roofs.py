@@ -73,10 +73,7 @@ class Roof:
         if math.isnan(self.usual) or floor.is_empty:
             return shapely.MultiPolygon()
         grid = bitmap.fit_grid(np.reshape(floor.bounds, (1, 2, 2)), _CELL_M)
-        row, column = np.indices(grid.shape)
-        middles_m = grid.low_m + _CELL_M * (np.stack([column, row], axis=-1) + 0.5)
-        is_roofed = _are_known(self.keys, middles_m.reshape(-1, 2)).reshape(grid.shape)
-        around = ndimage.uniform_filter(is_roofed.astype(float), _AROUND_CELLS, mode="constant")
+        around = ndimage.uniform_filter(self._draw_on(grid), _AROUND_CELLS, mode="constant")
         is_outside = things.are_outside(around / self.usual)
         is_outside &= bitmap.rasterise_lines(self.above_m, grid)
         is_outside &= bitmap.fill_polygons([floor], grid)
@@ -92,6 +89,16 @@ class Roof:
                 if part.area >= min_area_m2 and not shapely.intersects(part, places).any()
             ]
         )
+
+    def _draw_on(self, grid: bitmap.Grid) -> FloatArray:
+        """Return 1 for the cells (rows, columns) of a grid that have a ceiling, 0 for others."""
+        column, row = (
+            _find_cells(self.keys) - np.rint(grid.low_m / _CELL_M).astype(np.int64)[:, None]
+        )
+        is_within = (row >= 0) & (row < grid.shape[0]) & (column >= 0) & (column < grid.shape[1])
+        drawn = np.zeros(grid.shape)
+        drawn[row[is_within], column[is_within]] = 1.0
+        return drawn
 
 
 def find_roof(walls: Sequence[PlanWall], rays: RaySet) -> Roof:
@@ -162,3 +169,9 @@ def _number_cells(places_m: Array) -> IntArray:
     """Return one number for the cell that each place (n, 2) lies in."""
     column, row = np.floor(places_m / _CELL_M).astype(np.int64).T
     return (column << 32) + row
+
+
+def _find_cells(keys: IntArray) -> IntArray:
+    """Return column and row (2, k) of cells by their numbers."""
+    column = (keys + (1 << 31)) >> 32
+    return np.stack([column, keys - (column << 32)])
