@@ -70,7 +70,8 @@ def test_scans_that_do_not_fit_where_the_sensor_is_said_to_stand_are_doubted(
 
 def rays_at(xy_m):
     xyz_m = np.column_stack([xy_m, np.ones(len(xy_m))])
-    return SimpleNamespace(xyz_m=xyz_m, planar=True, scan_ids=[0])
+    sensors_m, first = np.array([(2.0, 1.5, 1.0)]), np.array([0, len(xyz_m)])
+    return SimpleNamespace(xyz_m=xyz_m, sensors_m=sensors_m, first=first, planar=True, scan_ids=[0])
 
 
 def points_on(plan, share, n=100):
@@ -88,6 +89,19 @@ def test_returns_beside_the_walls_are_doubted(share, is_doubted):
     off, through = contradictions.measure_drawn_walls(plan, rays, np.zeros((1, 2)))
     assert off.is_beyond == is_doubted and not through.is_beyond
     assert off.more["near"] == pytest.approx(share, abs=0.02)
+
+
+def test_what_lies_behind_a_pane_is_not_asked():
+    """Half of the returns end at a front of glass across the room, a half far behind it."""
+    pane = ((0.0, 2.5, 4.0, 2.5), -1, "glass", np.nan, np.nan, 0, 0)
+    openings = floorplan_making.openings([pane])
+    plan = floorplan_making.plan(openings=openings)
+    x_m = np.linspace(1.0, 3.0, 50)
+    ends_m = [np.column_stack([x_m, np.full(50, y_m)]) for y_m in (2.5, 40.0)]
+    rays = rays_at(np.concatenate(ends_m))
+    assert contradictions.measure_share_on_walls(plan, rays) == 1.0
+    without = floorplan_making.plan(openings=floorplan_making.openings([]))
+    assert contradictions.measure_share_on_walls(without, rays) == 0.0
 
 
 def test_a_way_through_walls_is_doubted():

@@ -81,6 +81,19 @@ def test_a_wall_that_is_not_drawn_stops_rays_in_the_outline():
     assert spoken == [{("outline", 1): "stopped"}, {("outline", 1): "explained"}]
 
 
+def test_rays_end_at_a_front_of_glass_or_go_through_it():
+    """It is the north side of the small room; nothing further on is drawn."""
+    pane = ((4.2, 3.0, 7.1, 3.0), -1, "glass", np.nan, np.nan, 1, -1)
+    openings = floorplan_making.openings([*floorplan_making.OPENINGS, pane])
+    rows = [row for row in floorplan_making.FACES if row != floorplan_making.FACES[2]]
+    plan = floorplan_making.plan(faces=floorplan_making.faces(rows), openings=openings)
+    ends = [(5.5, 2.5, 1.0), (5.5, 3.0, 1.0), (5.5, 4.0, 1.0)]
+    outcomes, spoken = judged(*ends, plan=plan, sensor=(5.5, 1.5, 1.0))
+    number = len(floorplan_making.OPENINGS)
+    assert outcomes == ["stopped", "explained", "outside"]
+    assert spoken == [{}, *[{("opening", number): "explained"}] * 2]
+
+
 def test_a_planar_sensor_has_no_heights():
     # in space this ray would meet the parapet, and that one the lintel
     ends = [(1.6, -3.0, 0.5), (6.9, 1.5, 2.4)]

@@ -50,21 +50,29 @@ def measure_range_offset(
 
 
 def measure_share_on_walls(plan: FloorPlan, rays: RaySet) -> float:
-    """Return the share of returns between floor and ceiling that lie near a drawn face.
+    """Return the share of returns between floor and ceiling that lie near a drawn face or pane.
 
-    Of a survey in space that never saw the floor, most returns may be of furniture.
+    Those that rays went through a pane to are not asked. Of a survey in space that never saw the
+    floor, most returns may be of furniture.
     """
     xyz_m = rays.xyz_m
+    row = np.arange(len(xyz_m))
     if not rays.planar:
         # comparisons with a ceiling that was not seen are false
         is_flat = xyz_m[:, 2] < plan.floor_z_m + STRETCH_M
         is_flat |= xyz_m[:, 2] > plan.ceiling_z_m - STRETCH_M
-        xyz_m = xyz_m[~is_flat]
+        row = np.flatnonzero(~is_flat)
     # as many as one scan has tell enough
-    points = shapely.get_parts(shapely.multipoints(xyz_m[:: len(rays.scan_ids), :2].astype(float)))
-    tree = shapely.STRtree(line_shapes(centrelines_m(plan.faces)))
-    near = tree.query(points, predicate="dwithin", distance=END_M)[0]
-    return len(np.unique(near)) / max(len(points), 1)
+    row = row[:: len(rays.scan_ids)]
+    end_m = xyz_m[row, :2]
+    sensor_m = rays.sensors_m[np.searchsorted(rays.first, row, "right") - 1, :2]
+    panes = line_shapes(centrelines_m(plan.openings)[plan.openings["type"] == "glass"])
+    drawn = shapely.STRtree([*line_shapes(centrelines_m(plan.faces)), *panes])
+    points = np.asarray(shapely.points(end_m), object)
+    near = drawn.query(points, predicate="dwithin", distance=END_M)[0]
+    beams = line_shapes(np.stack([sensor_m, end_m], axis=1))
+    beyond = np.setdiff1d(shapely.STRtree(panes).query(beams, predicate="intersects")[0], near)
+    return len(np.unique(near)) / max(len(row) - len(beyond), 1)
 
 
 def measure_share_through_walls(plan: FloorPlan, track_m: FloatArray) -> float:

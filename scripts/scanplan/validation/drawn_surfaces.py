@@ -32,6 +32,8 @@ class DrawnSurfaces:
         Of ways: half of the thickness of the wall that they lead through; 0 of surfaces.
     is_way : (k,) bool
         Rays are to go through, and not to end there.
+    is_pane : (k,) bool
+        Of ways, those of glass: rays may end at them as well.
     is_cap : (k,) bool
         The end of a wall, or the reveal of an opening: returns are explained by it, but none
         contradicts it, as what it adjoins is seldom drawn to its thickness.
@@ -45,6 +47,7 @@ class DrawnSurfaces:
     z_m: FloatArray
     half_m: FloatArray
     is_way: BoolArray
+    is_pane: BoolArray
     is_cap: BoolArray
     element: IntArray
     n_spans: IntArray
@@ -59,6 +62,7 @@ class _Surface:
     z_m: tuple[float, float]
     half_m: float = 0.0
     is_way: bool = False
+    is_pane: bool = False
     element: tuple[str, int, int] | None = None
     n_spans: int = 1
 
@@ -117,6 +121,7 @@ def _gather(surfaces: Sequence[_Surface]) -> DrawnSurfaces:
         np.array([s.z_m for s in surfaces], float).reshape(-1, 2),
         np.array([s.half_m for s in surfaces], float),
         np.array([s.is_way for s in surfaces], bool),
+        np.array([s.is_pane for s in surfaces], bool),
         np.array([s.element is None for s in surfaces], bool),
         np.array([-1 if s.element is None else row_of[s.element] for s in surfaces], np.int64),
         np.array([s.n_spans for s in surfaces], np.int64),
@@ -147,9 +152,9 @@ def _face_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> Iterator[
 def _opening_surfaces(plan: FloorPlan, *, planar: bool) -> Iterator[_Surface]:
     """Yield the openings: the way, what is below and above it on both sides, and its reveals."""
     floor_m, _ = plan.storey_m
-    known = (plan.openings[name] for name in ("opening", "sill_m", "lintel_m"))
+    known = (plan.openings[name] for name in ("opening", "type", "sill_m", "lintel_m"))
     rows = zip(*known, plan.hosts, centrelines_m(plan.openings), strict=True)
-    for opening, sill_m, lintel_m, host, ends_m in rows:
+    for opening, kind, sill_m, lintel_m, host, ends_m in rows:
         left_m, right_m = (float(side[host]) if host >= 0 else 0.0 for side in plan.sides_m)
         element = (OPENING, int(opening), 0)
         normal = _normal(ends_m)
@@ -157,7 +162,12 @@ def _opening_surfaces(plan: FloorPlan, *, planar: bool) -> Iterator[_Surface]:
         low_m = floor_m + sill_m if sill_m > 0 and not planar else -np.inf
         high_m = floor_m + lintel_m if np.isfinite(lintel_m) and not planar else np.inf
         half_m = max(left_m, right_m)
-        yield _Surface(ends_m, (low_m, high_m), half_m=half_m, is_way=True, element=element)
+        yield _Surface(
+            *(ends_m, (low_m, high_m), half_m),
+            is_way=True,
+            is_pane=kind == "glass",
+            element=element,
+        )
         for side_m in sides_m:
             if np.isfinite(low_m):
                 yield _Surface(side_m, (-np.inf, low_m), element=element)

@@ -21,10 +21,10 @@ class RayOutcomes:
     Attributes
     ----------
     outcome : (n,) int8
-        Index of `OUTCOMES`: explained, ended at a drawn surface that it had a way to; stopped
-        before the next (furniture, people, or what is not drawn); passed through one; beyond,
-        ended where nothing is drawn; outside, the same after it left through an opening, of which
-        the plan predicts nothing.
+        Index of `OUTCOMES`: explained, ended at a drawn surface, or pane, that it had a way to;
+        stopped before the next (furniture, people, or what is not drawn); passed through one;
+        beyond, ended where nothing is drawn; outside, the same after it left through a pane or
+        another opening, of which the plan predicts nothing.
     row, element : (m,) int64
         Rays, and the elements that they speak of.
     verdict : (m,) int8
@@ -169,20 +169,22 @@ def _judge(
     n = rows.stop - rows.start
     ray = met.row - rows.start
     is_way, is_cap = surfaces.is_way[met.surface], surfaces.is_cap[met.surface]
+    is_pane = surfaces.is_pane[met.surface]
+    may_end = ~is_way | is_pane
     is_behind = met.beyond_m > tolerance_m + surfaces.half_m[met.surface]
     is_before = met.beyond_m < -tolerance_m - surfaces.half_m[met.surface]
     passes = ~is_way & ~is_cap & is_behind & met.is_sure
     first_passed = np.full(n, np.inf)
     np.minimum.at(first_passed, ray[passes], met.share[passes])
     is_free = met.share < first_passed[ray]
-    ends = ~is_way & ~is_behind & ~is_before & met.is_at & np.isinf(first_passed)[ray]
+    ends = may_end & ~is_behind & ~is_before & met.is_at & np.isinf(first_passed)[ray]
     leaves = is_way & is_behind & met.is_sure & is_free
     outcome = np.full(n, BEYOND, np.int8)
-    outcome[ray[leaves & (surfaces.half_m[met.surface] > 0)]] = OUTSIDE
-    outcome[ray[~is_way & is_before & met.may_be]] = STOPPED
+    outcome[ray[leaves & (is_pane | (surfaces.half_m[met.surface] > 0))]] = OUTSIDE
+    outcome[ray[may_end & is_before & met.may_be]] = STOPPED
     outcome[ray[ends]] = EXPLAINED
     outcome[ray[passes]] = PASSED
-    blocked = is_way & ~is_behind & ~is_before & met.is_sure & (outcome > EXPLAINED)[ray]
+    blocked = ~may_end & ~is_behind & ~is_before & met.is_sure & (outcome > EXPLAINED)[ray]
     blocked &= is_free
     stops = _nearest_of_rays(ray, np.abs(met.beyond_m), ends)
     through = passes & (met.share == first_passed[ray])
