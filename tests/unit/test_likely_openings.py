@@ -49,11 +49,17 @@ class TestSettled:
         (door,) = wall.openings
         assert door.kind == "door" and door.p_kind > 0.8
 
-    def test_a_gap_of_half_a_metre_within_a_room_is_no_door_and_parts_what_stands_there(self):
-        parts = settled(opened(2, 2.55), ONE)
+    def test_a_gap_of_60_cm_within_a_room_is_no_door_and_parts_what_stands_there(self):
+        wall = opened(2, 2.65)
+        assert [opening.kind for opening in wall.openings] == ["door"]
+        parts = settled(wall, ONE)
         assert [part.openings for part in parts] == [[], []]
         spans_m = [np.sort(part.ends[:, 0]) for part in parts]
-        np.testing.assert_allclose(sorted(map(tuple, spans_m)), [(0, 2), (2.55, 5)], atol=0.05)
+        np.testing.assert_allclose(sorted(map(tuple, spans_m)), [(0, 2), (2.65, 5)], atol=0.05)
+
+    def test_what_is_narrower_than_any_leaf_is_a_gap(self):
+        (wall,) = settled(opened(2, 2.55), ONE)
+        assert [opening.kind for opening in wall.openings] == ["gap"]
 
     def test_a_window_from_room_to_room_is_a_picture_or_a_mirror(self):
         wall = opened(2, 2.6, (0.9, 2.1), faces=[(0, 5)])
