@@ -209,7 +209,9 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
         retained = found.store.scans(found.registered.scan_ids)
         find_floor = functools.partial(free_space.find_seen_floor, retained, sensors_m)
     find_rays = functools.partial(
-        *(fronts.gather_dense_rays, found.store.scans, found.registered),
+        fronts.gather_dense_rays,
+        found.store.scans,
+        found.registered,
         planar=found.store.planar,
     )
     others = planning.OtherScans(find_floor, find_rays)

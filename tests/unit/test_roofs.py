@@ -39,20 +39,20 @@ def look(points, *, planar=False):
 def test_walls_of_a_room_have_a_ceiling_before_them_and_a_facade_across_has_none():
     roof = find_roof([*ROOM, OUTSIDE], look(CEILING + FLOOR + ACROSS))
     assert roof.usual == 1
-    assert roof.share_before([*ROOM, OUTSIDE]).tolist() == [1, 1, 1, 1, 0]
+    assert roof.roofed.tolist() == [1, 1, 1, 1, 0]
 
 
 def test_of_a_wall_of_two_sides_one_has_a_ceiling():
     facade = facing(0, 0, 4, 0)
     facade.right.append(FaceInterval(observation(line_through(4, -0.3, 0, -0.3)), 0.0, 4.0))
-    assert find_roof(ROOM, look(CEILING)).share_before([facade]).tolist() == [1]
+    assert find_roof([*ROOM, facade], look(CEILING)).roofed.tolist() == [1] * 5
 
 
 def test_what_is_half_seen_everywhere_is_usual():
     half = [(x, y, z) for x, y, z in CEILING if (x // 0.25 + y // 0.25) % 3 < 2]
     found = find_roof(ROOM, look(half))
     assert 0.5 < found.usual < 0.8
-    assert found.share_before(ROOM) == pytest.approx(1, abs=0.1)
+    assert found.roofed == pytest.approx(1, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_what_is_half_seen_everywhere_is_usual():
 )
 def test_who_sees_no_ceilings_does_not_know_what_has_none(points, planar):
     roof = find_roof(ROOM, look(points, planar=planar))
-    assert np.isnan(roof.share_before(ROOM)).all()
+    assert np.isnan(roof.roofed).all()
     assert roof.find_outside(shapely.box(0, -6, 4, 4), SENSOR_M, min_area_m2=2.0).is_empty
 
 

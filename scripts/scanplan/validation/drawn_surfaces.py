@@ -163,7 +163,9 @@ def _opening_surfaces(plan: FloorPlan, *, planar: bool) -> Iterator[_Surface]:
         high_m = floor_m + lintel_m if np.isfinite(lintel_m) and not planar else np.inf
         half_m = max(left_m, right_m)
         yield _Surface(
-            *(ends_m, (low_m, high_m), half_m),
+            ends_m,
+            (low_m, high_m),
+            half_m,
             is_way=True,
             is_pane=kind == "glass",
             element=element,

@@ -39,21 +39,18 @@ class Roof:
     usual : float
         Share of the ground before the surfaces of the building that has a ceiling, the lower
         quartile; NaN where too little was seen of ceilings to tell what has none.
+    roofed : (w,) float64
+        How much of the ground before each of these surfaces has one, over the usual share; NaN
+        likewise. Of what was seen from both sides the ground before one of them counts: a facade
+        has a ceiling on one.
     above_m : (n, 2, 2) float64
         From where to where rays go higher than the ceilings above the sensor's track.
     """
 
     keys: IntArray
     usual: float
+    roofed: FloatArray
     above_m: FloatArray
-
-    def share_before(self, walls: Sequence[PlanWall]) -> FloatArray:
-        """Return how much of the ground before each wall (n,) has a ceiling, over the usual share.
-
-        Of what was seen from both sides the ground before one of them counts: a facade has a
-        ceiling on one. NaN where nothing is known of ceilings.
-        """
-        return np.array([_share_before(self.keys, wall) for wall in walls]) / self.usual
 
     def find_outside(
         self, floor: BaseGeometry, track_m: FloatArray, *, min_area_m2: float
@@ -116,13 +113,14 @@ def find_roof(walls: Sequence[PlanWall], rays: RaySet) -> Roof:
     xyz_m, sensor_m = rays.xyz_m[is_overhead], rays.sensors_m[scan[is_overhead]]
     number = _number_cells(xyz_m[:, :2])
     keys = np.unique(number)
-    shares = [_share_before(keys, wall) for wall in walls]
-    usual = float(np.quantile(shares, _USUAL)) if shares else 0.0
+    shares = np.array([_share_before(keys, wall) for wall in walls])
+    usual = float(np.quantile(shares, _USUAL)) if len(shares) else 0.0
     if usual < _LEAST_USUAL:
-        return Roof(keys, math.nan, np.empty((0, 2, 2)))
+        return Roof(keys, math.nan, np.full(len(shares), math.nan), np.empty((0, 2, 2)))
     is_near = np.isin(number, _cells_around(rays.sensors_m[:, :2]))
     ceiling_z_m = float(np.quantile(xyz_m[is_near, 2], _CEILING)) if is_near.any() else math.inf
-    return Roof(keys, usual, _find_above(xyz_m, sensor_m, ceiling_z_m + STRETCH_M))
+    above_m = _find_above(xyz_m, sensor_m, ceiling_z_m + STRETCH_M)
+    return Roof(keys, usual, shares / usual, above_m)
 
 
 def _cells_around(places_m: FloatArray) -> IntArray:

@@ -169,9 +169,8 @@ class Surroundings:
     def _turned_deg(self) -> FloatArray:
         """Return the angle (n,) of each wall to the directions that most of their length has."""
         direction = np.array([wall.ends[1] - wall.ends[0] for wall in self.walls]).reshape(-1, 2)
-        turn = np.exp(
-            4j * np.arctan2(direction[:, 1], direction[:, 0])
-        )  # the same of both and across
+        # the same of both and across
+        turn = np.exp(4j * np.arctan2(direction[:, 1], direction[:, 0]))
         main = (turn * np.hypot(*direction.T)).sum()
         return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
 

@@ -110,4 +110,4 @@ def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet, roof: Roof) -> lis
     """Return the features of parts of walls, whose openings are known."""
     counts = [wall_labels.count_wall(part, rays) for part in parts]
     through_glass = glass_views.find_glass_shares(parts, rays)
-    return Surroundings(parts).observe(counts, through_glass, roof.share_before(parts))
+    return Surroundings(parts).observe(counts, through_glass, roof.roofed)

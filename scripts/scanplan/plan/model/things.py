@@ -217,8 +217,7 @@ def are_outside(roofed: FloatArray) -> BoolArray:
         As of `Features`, of the ground itself.
     """
     density = DENSITIES["roofed"]
-    of_kinds = np.transpose(density.shares)[np.searchsorted(density.edges, roofed, "right")]
-    weights = np.array(SHARES) * of_kinds
+    weights = np.array(SHARES) * _look_up(roofed, density.edges, density.shares)
     return np.asarray(weights[..., OUTSIDE] > weights[..., WALL])
 
 
@@ -231,7 +230,7 @@ def weigh_pocket(length_m: float) -> float:
         Of the longest surface that hides it.
     """
     density = DENSITIES["length_m"]
-    of_kinds = np.transpose(density.shares)[np.searchsorted(density.edges, length_m, "right")]
+    of_kinds = _look_up(length_m, density.edges, density.shares)
     odds = POCKETS * of_kinds[FURNITURE] / of_kinds[WALL]
     return float(odds / (1 + odds))
 
@@ -259,7 +258,7 @@ def weigh_features(values: FloatArray, shares: Iterable[ArrayLike]) -> FloatArra
     """
     likely = np.zeros((len(values), len(KINDS)))
     for value, density, of_kinds in zip(values.T, DENSITIES.values(), shares, strict=True):
-        of_each = np.transpose(of_kinds)[np.searchsorted(density.edges, value, "right")]
+        of_each = _look_up(value, density.edges, of_kinds)
         likely += np.where(np.isnan(value)[:, None], 0.0, np.log(of_each))
     return likely
 
@@ -278,3 +277,8 @@ def weigh_kinds(likely: FloatArray, shares: ArrayLike, temper: float) -> FloatAr
     """
     weight = np.log(shares) + temper * likely
     return weight - np.logaddexp.reduce(weight, axis=1, keepdims=True)
+
+
+def _look_up(value: ArrayLike, edges: Sequence[float], shares: ArrayLike) -> FloatArray:
+    """Return the share (..., 4) that each kind has of the ranges that values (...) lie in."""
+    return np.transpose(shares)[np.searchsorted(edges, value, "right")]
