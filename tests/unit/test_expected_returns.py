@@ -11,6 +11,7 @@ from scanplan.rays.usual_returns import count_returns_below
 
 AZIMUTH_RAD = np.radians(np.arange(-179.5, 180))
 ELEVATIONS_DEG = np.arange(-4.5, 5, 1.0)  # ten beams
+UP = np.array([0.0, 0.0, 1.0])
 
 
 def below_deg(counts, elevation_deg):
@@ -20,7 +21,7 @@ def below_deg(counts, elevation_deg):
 class TestUsualReturns:
     def test_a_beam_has_one_return_a_degree_above_its_elevation(self):
         points = np.column_stack([np.cos(AZIMUTH_RAD), np.sin(AZIMUTH_RAD), 0 * AZIMUTH_RAD + 0.1])
-        counts = count_returns_below(AZIMUTH_RAD, points)
+        counts = count_returns_below(AZIMUTH_RAD, points, UP)
         assert len(counts) == 1801
         # atan(0.1) is 5.7 degrees
         assert (below_deg(counts, 5.7), below_deg(counts, 5.8)) == (0, 1)
@@ -30,10 +31,10 @@ class TestUsualReturns:
         chosen = (AZIMUTH_RAD > 0) & (np.pi / 2 > AZIMUTH_RAD)
         azimuth_rad = AZIMUTH_RAD[chosen]
         points = np.column_stack([np.cos(azimuth_rad), np.sin(azimuth_rad), 0 * azimuth_rad])
-        assert count_returns_below(azimuth_rad, points)[-1] == 1
+        assert count_returns_below(azimuth_rad, points, UP)[-1] == 1
 
     def test_no_returns(self):
-        assert not count_returns_below(np.empty(0), np.empty((0, 3))).any()
+        assert not count_returns_below(np.empty(0), np.empty((0, 3)), UP).any()
 
 
 def points_of(range_m):
@@ -130,6 +131,35 @@ def test_of_glass_little_comes_back():
     # the pane's own directions are empty, and so count for nothing where rays are expected
     assert found.returned.sum() == 0
     assert found.missing().sum() == pytest.approx(EXPECTED, rel=0.15)
+
+
+@pytest.mark.parametrize(("gap_deg", "missing_deg"), [(6, 0), (14, 14)])
+def test_where_a_sweep_began_nothing_is_expected(gap_deg, missing_deg):
+    """A sensor that turns sends no rays to some degrees; what is wider nothing came back from."""
+
+    def range_m(azimuth_deg, slope):
+        is_sent = np.abs(azimuth_deg + 90) > gap_deg / 2
+        return np.where(is_sent, wall_or(2.0)(azimuth_deg, slope), np.nan)
+
+    found = sent(range_m)
+    # ten beams, one ray a degree
+    assert found.missing().sum() == pytest.approx(10 * missing_deg, abs=10)
+    assert found.returned.sum() == pytest.approx(EXPECTED - 10 * gap_deg, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("heights_m", "is_expected"),
+    [((0.5, 0.85), False), ((0.835, 2.0), False), ((0.5, 0.87), True), ((0.82, 0.87), True)],
+)
+def test_a_beam_near_the_edge_of_a_row_is_expected_in_none(heights_m, is_expected):
+    """The lowest, 4.5 degrees down, meets the wall 84 cm above the floor; swaying by 2 cm."""
+
+    def range_m(azimuth_deg, slope):
+        return np.where(slope < np.tan(np.radians(-4)), wall_or(2.0)(azimuth_deg, slope), np.nan)
+
+    found = sent(range_m, low_m=-0.1, count=4, heights_m=heights_m)
+    assert (found.expected > 0).all() == is_expected
+    assert (found.expected > 0).any() == is_expected
 
 
 def test_rays_that_go_through_and_come_back_are_returned():

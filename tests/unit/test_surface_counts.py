@@ -181,7 +181,7 @@ class TestLost:
 
     def test_of_a_tilted_sensor_nothing_is_known_to_be_lost(self, looked, counts):
         own = [Side(NORTH, 0.24, ALL)]
-        upset = replace(looked, is_level=np.zeros(3, bool))
+        upset = looked.with_up(np.tile((0.6, 0.0, 0.8), (3, 1)))
         tilted = count_ends(upset, NORTH, 0.0, 4.0, own).ends
         assert tilted[..., LOST].sum() == 0
         np.testing.assert_array_equal(tilted[..., :LOST] > 0, counts.ends[..., :LOST] > 0)

@@ -1,7 +1,6 @@
 """From wall segments and the points of the chosen scans to a floor plan."""
 
 import functools
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
@@ -58,7 +57,6 @@ TABLES = {
     "furniture": schemas.FURNITURE,
 }
 """The tables of a plan by the names of their files."""
-_LEVEL = math.cos(math.radians(2))  # of the axis to the plumb line: a beam of a VLP-16
 _Free = tuple[list[shapely.MultiPolygon], shapely.MultiPolygon]
 
 
@@ -228,7 +226,7 @@ def make_plan(
         rays, segments, settings.ranges, settings.reading.band_m, up
     )
     rays = range_bias.remove_range_bias(rays, errors_m, up, threads)
-    rays = replace(rays, is_level=np.abs(up[:, 2]) >= _LEVEL)
+    rays = rays.with_up(up)
     openings = settings.openings
     find_free = workers.begin_in_thread(
         _find_free,
@@ -244,7 +242,7 @@ def make_plan(
             return rays
         dense, up = others.find_rays()
         dense = range_bias.remove_range_bias(dense, errors_m, up, threads)
-        return replace(dense, floor_z_m=rays.floor_z_m, is_level=np.abs(up[:, 2]) >= _LEVEL)
+        return replace(dense, floor_z_m=rays.floor_z_m).with_up(up)
 
     survey = _Survey(
         settings, rays, find_dense, track_m, find_free, others.find_floor, designed, threads

@@ -88,6 +88,8 @@ class WatchedColumns:
         The azimuth that a column fills.
     is_asked : (v, n) bool
         Of others nothing is expected: it sees them too obliquely, or rays there were left out.
+    lean : (v, n) float64
+        How much the sensor's axis leans towards each column: its level part, along the way there.
     azimuth_rad : (v, n) float64 or None
         Towards each column, of planar scans.
     width : int
@@ -103,6 +105,7 @@ class WatchedColumns:
     distance_m: FloatArray
     column_deg: FloatArray
     is_asked: BoolArray
+    lean: FloatArray
     azimuth_rad: FloatArray | None
     width: int
     cell: IntArray
@@ -110,21 +113,26 @@ class WatchedColumns:
     is_returned: BoolArray
 
     def per_deg_below(self, height_m: float) -> FloatArray:
-        """Return how many returns to a degree of azimuth are usual below a height, (v, n).
+        """Return how many returns to a degree of azimuth are usual below a height, (t, v, n).
 
-        Of planar scans all are above the floor, and below any height there.
+        For each of the ways in which a sensor may be tilted. Of planar scans all are above the
+        floor, and below any height there.
         """
         if self.azimuth_rad is not None:
             if height_m <= 0:
-                return np.zeros(self.distance_m.shape)
-            return self.rays.beams.per_deg_at(self.scan, self.azimuth_rad, self.distance_m)
+                return np.zeros((1, *self.distance_m.shape))
+            return self.rays.beams.per_deg_at(self.scan, self.azimuth_rad, self.distance_m)[None]
         rise_m = height_m + self.rays.floor_z_m - self.rays.sensors_m[self.scan, 2, None]
-        elevation_rad = np.arctan2(rise_m, self.distance_m)
+        up_m = self.rays.up[self.scan, 2, None] * rise_m + self.lean * self.distance_m
+        elevation_rad = np.arcsin(up_m / np.hypot(rise_m, self.distance_m))
         return usual_returns.count_below(self.rays.usual, self.scan[:, None], elevation_rad)
 
     def expect_returns(self, low_per_deg: FloatArray, high_per_deg: FloatArray) -> FloatArray:
-        """Return the returns (v, n) to be expected between heights, of `per_deg_below` of both."""
-        return (high_per_deg - low_per_deg) * self.column_deg * self.is_asked
+        """Return the returns (v, n) to be expected between heights, of `per_deg_below` of both.
+
+        However the sensor is tilted: single beams are in one row of heights or the next.
+        """
+        return (high_per_deg - low_per_deg).min(axis=0) * self.column_deg * self.is_asked
 
     def count_sent(self, heights_m: tuple[float, float], expected: FloatArray) -> SentRays:
         """Return the rays that were sent to the columns between heights above the floor."""
@@ -162,15 +170,19 @@ def watch_columns(
     away_m = low_m + column_m * (np.arange(count) + 0.5) - views.sensor_along_m[looking, None]
     distance_m = np.hypot(away_m, side_m)
     is_asked = np.abs(away_m) < grazing_m[looking, None]
-    azimuth_rad = None
-    is_partial = bool(rays.left_out.any())
-    if rays.planar or is_partial:
-        # from the shortest way to the plane
-        normal_x, normal_y = views.normal[looking].T[:, :, None]
-        azimuth_rad = np.arctan2(-normal_y, -normal_x) + np.arctan2(away_m, side_m)
-    if azimuth_rad is not None and is_partial:
+    scan = views.scan[looking]
+    normal = views.normal[looking]
+    # from the shortest way to the plane, as the line's direction is its normal turned to the right
+    azimuth_rad = np.arctan2(-normal[:, 1:], -normal[:, :1]) + np.arctan2(away_m, side_m)
+    if rays.left_out.any():
         sector = number_sectors((azimuth_rad + np.pi) % (2 * np.pi) - np.pi)
-        is_asked &= ~rays.left_out[views.scan[looking, None], sector]
+        is_asked &= ~rays.left_out[scan[:, None], sector]
+    if not rays.planar:
+        for row, number in enumerate(scan.tolist()):
+            for begin_rad, wide_rad in rays.sweep_gaps[number].tolist():
+                is_asked[row] &= (azimuth_rad[row] - begin_rad) % (2 * np.pi) >= wide_rad
+    way = np.stack([np.cos(azimuth_rad), np.sin(azimuth_rad)], axis=-1)
+    lean = np.einsum("vnk,vk->vn", way, rays.up[scan, :2])
     view, along_m = face.view, face.along_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
@@ -180,10 +192,11 @@ def watch_columns(
     return WatchedColumns(
         rays=rays,
         looking=looking,
-        scan=views.scan[looking],
+        scan=scan,
         distance_m=distance_m,
         column_deg=np.rad2deg(column_m * side_m / distance_m**2),
         is_asked=is_asked,
+        lean=lean,
         azimuth_rad=azimuth_rad if rays.planar else None,
         # of one beam there are few; as many columns on either side
         width=2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH,

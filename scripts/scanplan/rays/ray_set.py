@@ -12,11 +12,13 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.rays import azimuth_sectors, beam_spread, levels, usual_returns
+from scanplan.rays.sweep_gaps import find_sweep_gaps
 from scanplan.stage import workers
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 ROWS_M = np.arange(1, 43, 2) / 10
 """Edges of the rows of heights: of beams 2 degrees apart two meet 0.2 m at 3 m."""
+_LEVEL = np.cos(np.radians(2))  # of the axis to the plumb line: a beam of a VLP-16
 _STEEP = np.tan(np.radians(20))  # up: beams of a lidar that looks level go no steeper
 _PLANE_M = 1.0  # where scans lie in one plane: above skirting boards, sills of doors, below lintels
 _TURN = 10.0  # more than a turn, so that the keys of scans do not overlap
@@ -40,9 +42,8 @@ class RaySet:
         Height of the floor; NaN for planar scans.
     planar : bool
         Whether the scans lie in one level plane, so that heights mean nothing.
-    is_level : (s,) bool
-        Which were taken with the sensor upright: how many rays others send up or down changes with
-        the direction, so that of them nothing is known to be lost.
+    up : (s, 3) float64
+        The axis that the beams of each scan's sensor are inclined to, a unit vector.
     left_out : (s, 72) bool
         In which sectors of azimuth rays were left out: of these nothing is known to be lost either.
     """
@@ -54,7 +55,7 @@ class RaySet:
     xyz_m: FloatArray
     floor_z_m: float
     planar: bool
-    is_level: BoolArray
+    up: FloatArray
     left_out: BoolArray
 
     @property
@@ -99,12 +100,18 @@ class RaySet:
         See `usual_returns`.
         """
         usual = []
-        for (azimuth_rad, way_m), left_out in zip(self.headings(), self.left_out, strict=True):
+        scans = zip(self.headings(), self.left_out, self.up, strict=True)
+        for (azimuth_rad, way_m), left_out, up in scans:
             known = slice(None)
             if left_out.any():
                 known = ~left_out[azimuth_sectors.number_sectors(azimuth_rad)]
-            usual.append(usual_returns.count_returns_below(azimuth_rad[known], way_m[known]))
+            usual.append(usual_returns.count_returns_below(azimuth_rad[known], way_m[known], up))
         return np.array(usual)
+
+    @cached_property
+    def sweep_gaps(self) -> list[FloatArray]:
+        """Where each scan in space sent no rays, see `find_sweep_gaps`."""
+        return [find_sweep_gaps(self.azimuth_rad[rows]) for rows in self.rows]
 
     @cached_property
     def beams(self) -> beam_spread.PlanarBeams:
@@ -122,6 +129,18 @@ class RaySet:
         """Iterate over the azimuths (n,) of each scan's rays and the ways (n, 3) that they go."""
         for rows, sensor_m in zip(self.rows, self.sensors_m, strict=True):
             yield self.azimuth_rad[rows], self.xyz_m[rows] - sensor_m
+
+    def with_up(self, up: FloatArray) -> "RaySet":
+        """Return rays of sensors whose axes (s, 3) point up or, of those upside down, down."""
+        return replace(self, up=np.where(up[:, 2:] < 0, -up, up))
+
+    @property
+    def is_level(self) -> BoolArray:
+        """Which scans (s,) were taken with the sensor upright.
+
+        Of rays of others nothing is known to be lost: where they go changes with the direction.
+        """
+        return self.up[:, 2] >= _LEVEL
 
     def with_points(self, xyz_m: FloatArray) -> "RaySet":
         """Return rays that end at other points (n, 3), in the same directions."""
@@ -274,7 +293,7 @@ def gather_rays(
         if planar
         else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
         planar=bool(planar),
-        is_level=np.ones(len(scan_ids), bool),
+        up=np.tile((0.0, 0.0, 1.0), (len(scan_ids), 1)),
         left_out=np.array([of_scan.get(i, whole) for i in scan_ids], bool).reshape(-1, len(whole)),
     )
 

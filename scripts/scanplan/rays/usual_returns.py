@@ -6,9 +6,10 @@ from scanplan.rays.azimuth_sectors import N_SECTORS, number_sectors
 from scanplan.types import FloatArray, IntArray
 
 _ROWS_PER_DEG = 10  # of elevation: beams of a VLP-16 are 2 degrees apart, of dense sensors 0.2
+_TILTS = (-5, 0, 5)  # rows: a rover sways by half a degree, which poses in the plane do not show
 
 
-def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArray:
+def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray, up: FloatArray) -> FloatArray:
     """Count a scan's returns below elevations, per degree of azimuth around which there are any.
 
     Parameters
@@ -16,6 +17,8 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     azimuth_rad : (n,) float
     xyz_m : (n, 3) float
         Relative to the sensor.
+    up : (3,) float
+        The axis that elevations are counted from the plane across.
 
     Returns
     -------
@@ -24,14 +27,16 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray) -> FloatArra
     """
     sector = number_sectors(azimuth_rad)
     seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
-    elevation_deg = np.rad2deg(np.arctan2(xyz_m[:, 2], np.hypot(xyz_m[:, 0], xyz_m[:, 1])))
+    elevation_deg = np.rad2deg(np.arcsin(xyz_m @ up / np.linalg.norm(xyz_m, axis=1)))
     n_rows = 180 * _ROWS_PER_DEG
     row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
     return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg
 
 
 def count_below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) -> FloatArray:
-    """Return how many returns to a degree of azimuth scans usually have below elevations, (s, n).
+    """Return how many returns to a degree of azimuth scans usually have below elevations.
+
+    As they may be tilted: a little to one side, not at all, and to the other.
 
     Parameters
     ----------
@@ -42,10 +47,16 @@ def count_below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) ->
 
     Returns
     -------
-    (s, n) float64
+    (3, s, n) float64
         Straight between the steps.
     """
     at = (np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG
-    row = np.minimum(at.astype(np.int64), usual.shape[1] - 2)
-    below = usual[scan, row]
-    return below + (at - row) * (usual[scan, row + 1] - below)
+    row = at.astype(np.int64)
+    share = at - row
+    last = usual.shape[1] - 2
+    out = np.empty((len(_TILTS), *at.shape))
+    for below, tilt in zip(out, _TILTS, strict=True):
+        tilted = np.clip(row + tilt, 0, last)
+        below[:] = usual[scan, tilted]
+        below += share * (usual[scan, tilted + 1] - below)
+    return out
