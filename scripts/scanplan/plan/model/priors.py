@@ -90,7 +90,7 @@ _AT_ENDS = (
     {GLASS: 0.1, SOLID: 0.6, DOOR: 0.05, OPEN: 0.25},
     {SOLID: 0.5, OPEN: 0.5},
 )
-_AT_NEXT = {OPEN: 0.75, SOLID: 0.2, GLASS: 0.03, DOOR: 0.01, SHUT: 0.01}
+_AT_NEXT = {OPEN: 0.74, SOLID: 0.2, GLASS: 0.03, DOOR: 0.01, SHUT: 0.01, WINDOW: 0.01}
 """Likewise where none of its faces was seen up to the next wall: nearly always nothing is there; a
 lintel, or in the plane the usual width of a door, says otherwise."""
 _BETWEEN_WALLS = {OPEN: 20.0, DOOR: 0.2}
