@@ -47,6 +47,26 @@ def doubled_m(merged, distance_m, max_angle_deg):
     return worst
 
 
+class TestOneLine:
+    """Two walls in a row, 2 m apart, each shown by eight scans a few millimetres beside it."""
+
+    def lines(self, step_m):
+        off_m = 0.004 * np.array([-1, 1, 1, -1, -1, 1, 1, -1])
+        rows = [(0, o, 4, o) for o in off_m] + [(6, step_m + o, 9, step_m + o) for o in off_m]
+        table = walls(rows, scan_id=list(range(8)) * 2)
+        merged = merge(table, tolerance_m=0.06, align_gap_m=3.0)
+        return np.unique(np.round(np.degrees(np.arctan2(merged["nx"], merged["ny"])), 3))
+
+    def test_a_step_of_8_cm_is_likelier_two_lines_than_a_turned_one(self):
+        np.testing.assert_allclose(self.lines(0.08), 0, atol=1e-6)
+
+    @pytest.mark.parametrize("step_m", [0.0, 0.004])
+    def test_what_walls_are_not_straight_by_is_no_step(self, step_m):
+        (turned_deg,) = self.lines(step_m)
+        # from the middle of the one to that of the other are 5.5 m
+        assert abs(turned_deg) == pytest.approx(np.degrees(step_m / 5.5), abs=0.05)
+
+
 class TestOneFace:
     def test_a_single_segment_is_its_own_face(self):
         merged = merge(walls([(1, 2, 4, 6)]))
@@ -74,8 +94,9 @@ class TestOneFace:
         np.testing.assert_allclose(ends(merged)[0, [1, 3]], 0.01)
 
     def test_halves_that_fit_one_line_only_together_join(self):
-        # the second is 7 cm off the line of the first, both are within 6 cm of a common one
-        assert len(merge(walls([(0, 0, 4, 0), (4.2, 0.07, 8, 0.07)]))["face"]) == 1
+        # the second is 2 cm off the line of the first, both are within 1.5 cm of a common one
+        table = walls([(0, 0, 4, 0), (4.2, 0.02, 8, 0.02)])
+        assert len(merge(table, tolerance_m=0.015)["face"]) == 1
 
     def test_two_segments_of_one_scan_count_as_one_scan(self):
         merged = merge(walls([(0, 0, 2, 0), (2.1, 0, 4, 0)], scan_id=[7, 7]))

@@ -96,9 +96,12 @@ class TestParts:
         south = scans_at(5, with_hole((1.2, 3.8)), SOUTH_M, face_y_m=-0.2, ceiling_m=HALL_M)
         wall, looked = paired(north + south, [(0, 1.2)], [(0, 1.2), (3.8, 5)], length_m=5.0)
         (one, _), (other, _) = parts(wall, looked)
-        assert one.left and one.right and one.line is wall.line
-        assert other.left and not other.right
+        assert one.left and one.right and one.thickness_m == pytest.approx(0.2)
+        np.testing.assert_allclose(one.line.offset_m(wall.line.centre), 0, atol=1e-9)
+        # it lies where its face does, and how thick it is was not seen
+        assert other.left and not other.right and np.isnan(other.thickness_m)
         assert other.line.normal.tolist() == [0, -1]
+        np.testing.assert_allclose(other.line.offset_m(np.array([4.0, -0.2])), 0, atol=1e-9)
         np.testing.assert_allclose(spans_x([other]), [(3.8, 5)], atol=0.06)
         np.testing.assert_allclose(spans_x(other.left), [(3.8, 5)], atol=0.06)
 
@@ -165,7 +168,7 @@ class TestLowParts:
         """Of the part that rays pass over it is told; how high it is says nothing of a wall."""
         asked = []
 
-        def keep(features, _known):
+        def keep(features, *_known):
             asked.extend(features)
             return np.eye(4)[[things.WALL] * len(features)]
 

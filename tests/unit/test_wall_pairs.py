@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -7,6 +8,7 @@ from hypothesis import strategies as st
 
 from helpers import observation_making
 from scanplan.plan import wall_pairs
+from scanplan.plan.openings import OPEN, Opening
 
 SETTINGS = wall_pairs.PairSettings(
     max_angle_deg=5.0, min_thickness_m=0.04, max_thickness_m=0.6, offset_m=0.05, max_gap_m=2.0
@@ -91,6 +93,25 @@ def test_rays_through_the_unseen_part_of_a_side_part_it_from_the_other():
     assert len(pair(front, wall)) == 1
     crossed = 3 * [(along_m, 0.0) for along_m in np.arange(1.2, 3, 0.05)]
     assert len(pair(stretch(1, 0.5, 2, 0.5, free=crossed), wall)) == 2
+
+
+def test_a_part_lies_where_its_own_faces_do_and_is_as_thick():
+    """A wall of 0.2 m, and in line with its one side the front of a cupboard across a corridor."""
+    (whole,) = pair(stretch(0, 0.2, 4, 0.2), stretch(4, 0, 0, 0), stretch(5.5, 0.24, 9, 0.24))
+    front = next(face for face in whole.members if face.ends[:, 0].min() > 5)
+    opening = Opening(0.5, 1.0, OPEN, 9, 0.9, 2.1, below_wall=False)
+    part = replace(whole, left=[front], right=[], low_m=whole.low_m, openings=[opening])
+    found = wall_pairs.refit_wall(part)
+    assert math.isnan(found.thickness_m) and (len(found.left), len(found.right)) == (1, 0)
+    np.testing.assert_allclose(found.line.offset_m(front.ends), 0, atol=1e-9)
+    np.testing.assert_allclose(found.line.normal, [0, 1], atol=1e-9)
+    # places along it stay where they were, but for the turn
+    low_m, high_m = found.openings[0].low_m, found.openings[0].high_m
+    np.testing.assert_allclose(
+        np.sort(found.line.at(np.array([low_m, high_m]))[:, 0]),
+        np.sort(whole.line.at(np.array([0.5, 1.0]))[:, 0]),
+        atol=0.01,
+    )
 
 
 def test_nothing_is_no_wall():

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -88,6 +88,33 @@ def pair_faces(
             for index in joined.members:
                 wall_of[index] = first
     return [wall.make() for _, wall in sorted(walls.items())]
+
+
+def refit_wall(wall: PlanWall) -> PlanWall:
+    """Return a part of a wall where its own faces lie, and as thick, with its openings.
+
+    What other parts of the line showed, across a corridor or a wide opening, says nothing of it.
+    """
+    fitted = _Sides(list(range(len(wall.members))), wall.members).make()
+
+    def move(low_m: float, high_m: float) -> dict[str, float]:
+        along_m = fitted.line.along_m(wall.line.at(np.array([low_m, high_m])))
+        return {"low_m": float(along_m.min()), "high_m": float(along_m.max())}
+
+    openings, closed = (
+        sorted((replace(of, **move(of.low_m, of.high_m)) for of in gaps), key=lambda of: of.low_m)
+        for gaps in (wall.openings, wall.closed)
+    )
+    return replace(
+        wall,
+        line=fitted.line,
+        **move(wall.low_m, wall.high_m),
+        thickness_m=fitted.thickness_m,
+        left=fitted.left,
+        right=fitted.right,
+        openings=openings,
+        closed=closed,
+    )
 
 
 def _offer_pairs(

@@ -183,7 +183,7 @@ def _part(
     faces = {face for face, inside in zip(wall.members, is_inside, strict=True) if inside}
     of_part = [g for g in gaps if begin_m < (g.low_m + g.high_m) / 2 < end_m]
     of_part = [_between_sides(g, spans_m[is_inside]) for g in of_part]
-    return replace(
+    part = replace(
         wall,
         low_m=float(spans_m[is_inside].min()),
         high_m=float(spans_m[is_inside].max()),
@@ -192,6 +192,7 @@ def _part(
         openings=[g for g in of_part if g.state == OPEN],
         closed=[g for g in of_part if g.state == CLOSED],
     )
+    return part if is_inside.all() else wall_pairs.refit_wall(part)
 
 
 def _openings_between_things(gaps: Sequence[Opening], spans_m: FloatArray) -> list[Opening]:
@@ -223,7 +224,8 @@ def _cut_at_corridors(wall: PlanWall, crossings: Sequence[Crossing]) -> list[Pla
             ends_m += [float(through_m[row].mean()) for row in near]
     if not crosses:
         return [wall]
-    return wall.part(np.sort(ends_m).reshape(-1, 2))
+    parts = wall.part(np.sort(ends_m).reshape(-1, 2))
+    return list(map(wall_pairs.refit_wall, parts))
 
 
 def _between_sides(gap: Opening, spans_m: FloatArray) -> Opening:

@@ -15,6 +15,8 @@ from scanplan.geometry.lines import (
 )
 from scanplan.types import Array, BoolArray, FloatArray, IntArray
 
+_STRAIGHT_M = 0.01
+"""ASSUME of a wall: what is plastered or tiled of it is flat within so much."""
 _MOST_ROUNDS = 100  # bounds the time of groups that settle in circles
 
 
@@ -158,9 +160,30 @@ def _joint_deviation_m(
     line = fit_segments_line(segments, members)
     if not _fits(line, segments, members, limits).all():
         return None
-    if _gap_m(line, segments, one, other) > limits.reach_m:
+    gap_m = _gap_m(line, segments, one, other)
+    if gap_m > limits.reach_m or (gap_m > 0 and _are_two(segments, line, one, other)):
         return None
     return end_deviation_m(line, segments, members).max()
+
+
+def _are_two(segments: ObservedSegments, joint: Line, one: IntArray, other: IntArray) -> bool:
+    """Return whether two groups are likelier on a line each than on their joint one.
+
+    Each segment is a witness, and errs by what those of a line differ by, and by what a wall is not
+    straight; a further line is worth its two parameters (Schwarz 1978, Estimating the dimension of
+    a model).
+    """
+    own_m2 = sum(_spread_m2(fit_segments_line(segments, of), segments, of) for of in (one, other))
+    joint_m2 = sum(_spread_m2(joint, segments, of) for of in (one, other))
+    count = len(one) + len(other)
+    variance_m2 = own_m2 / count + _STRAIGHT_M**2
+    return bool((joint_m2 - own_m2) / (2 * variance_m2) > np.log(count))
+
+
+def _spread_m2(line: Line, segments: ObservedSegments, members: IntArray) -> float:
+    """Return the sum of the mean squares of how far each member is off a line along its length."""
+    start_m, end_m = line.offset_m(segments.start[members]), line.offset_m(segments.end[members])
+    return float((start_m**2 + start_m * end_m + end_m**2).sum() / 3)
 
 
 def _gap_m(line: Line, segments: ObservedSegments, one: IntArray, other: IntArray) -> float:

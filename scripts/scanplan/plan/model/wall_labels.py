@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from scanplan.geometry.intervals import find_gaps
-from scanplan.geometry.lines import Line
+from scanplan.plan import wall_pairs
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.model import line_ends, line_labels, opening_edges, priors, surface_counts
 from scanplan.plan.model.designed_walls import DesignedWalls
@@ -87,7 +87,9 @@ def label_wall(
         part = _clip_wall(wall, run[0].low_m, run[-1].high_m)
         if part.members and part.length_m >= END_M:
             top_m = run[0].lintel_m if run[0].kind == "low" else np.nan
-            yield _open_wall(part, wall, run), top_m
+            opened = _open_wall(part, wall, run)
+            is_whole = len(part.members) == len(wall.members)
+            yield opened if is_whole else wall_pairs.refit_wall(opened), top_m
 
 
 def _list_sides(wall: PlanWall) -> Iterator[Side]:
@@ -139,9 +141,6 @@ def _clip_wall(wall: PlanWall, low_m: float, high_m: float) -> PlanWall:
         [part for face in side for part in _clip_face(wall, face, low_m, high_m)]
         for side in (wall.left, wall.right)
     )
-    if right and not left:
-        line = Line(wall.line.centre, -wall.line.normal)
-        return replace(wall, line=line, low_m=-high_m, high_m=-low_m, left=right, right=[])
     return replace(wall, low_m=low_m, high_m=high_m, left=left, right=right)
 
 
@@ -162,14 +161,11 @@ def _part_face(face: FaceInterval, low_m: float, high_m: float) -> list[FaceInte
 
 def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWall:
     """Return a part of a wall with its openings, its faces cut where these reach the floor."""
-    turned = part.line is not wall.line
     openings = [
-        _turn(opening) if turned else opening
+        opening_edges.measure_opening(wall, stretch)
         for stretch in run
         if opening_edges.is_opening(stretch)
-        for opening in [opening_edges.measure_opening(wall, stretch)]
     ]
-    openings.sort(key=lambda opening: opening.low_m)
     opened = replace(
         part,
         openings=openings,
@@ -191,7 +187,7 @@ def _open_wall(part: PlanWall, wall: PlanWall, run: Sequence[Stretch]) -> PlanWa
         for side in (part.left, part.right)
     )
     # what is nothing but openings has no face left, and is drawn by what is seen in them
-    return replace(opened, left=left, right=right) if left else opened
+    return replace(opened, left=left, right=right) if left or right else opened
 
 
 def _find_p_solid(run: Sequence[Stretch]) -> float:
@@ -199,11 +195,6 @@ def _find_p_solid(run: Sequence[Stretch]) -> float:
     solid = [stretch for stretch in run if not opening_edges.is_opening(stretch)]
     whole_m = sum(stretch.length_m for stretch in solid)
     return sum(stretch.p * stretch.length_m for stretch in solid) / whole_m if solid else np.nan
-
-
-def _turn(opening: Opening) -> Opening:
-    """Return an opening along the same line, its direction turned round."""
-    return replace(opening, low_m=-opening.high_m, high_m=-opening.low_m)
 
 
 def _cut_face(wall: PlanWall, face: FaceInterval, ways: Sequence[Opening]) -> list[FaceInterval]:
