@@ -22,8 +22,7 @@ from scanplan.lab.evaluation import face_cells
 from scanplan.lab.evaluation.scores import false_walls, score_files
 from scanplan.plan.model import things
 from scanplan.plan.model.roofs import Roof
-from scanplan.plan.model.surface_features import Features
-from scanplan.plan.plan_wall import PlanWall
+from scanplan.plan.model.surface_features import Features, Surroundings
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray, Settings
@@ -46,11 +45,15 @@ _LEAST_SHARE = 0.005  # what never was may be
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """Surfaces of some drives: features (n, f) in the order of `things.DENSITIES`, and kinds."""
+    """Surfaces of some drives: features (n, f) in the order of `things.DENSITIES`, and kinds.
+
+    And how often kinds (k, k) meet at outer corners.
+    """
 
     features: FloatArray
     kind: IntArray
     length_m: FloatArray
+    corners: IntArray
 
 
 def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
@@ -79,6 +82,7 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
         found: list[Surfaces] = list(run(observe, [(path, settings) for path in chosen]))
     everything = _join(found)
     print(format_table(count_shares(everything), fit(everything)))
+    print(f"CORNERS = {fit_corners(everything.corners).round(2).tolist()}")
     kinds = [floors[path].kind for path in chosen]
     left_out: list[tuple[Surfaces, FloatArray, FloatArray]] = []
     for kind in sorted(set(kinds)):
@@ -93,11 +97,11 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     """Return the surfaces of a plan by labels that are something in the truth."""
     recorded = ablation_scores.find_truth(results)
     assert recorded is not None
-    observed: list[tuple[Sequence[PlanWall], list[Features]]] = []
+    observed: list[tuple[Surroundings, list[Features]]] = []
 
     def record(function: Function) -> Function:
-        def asked(parts: Sequence[PlanWall], rays: RaySet, roof: Roof) -> list[Features]:
-            observed.append((parts, function(parts, rays, roof)))
+        def asked(surroundings: Surroundings, rays: RaySet, roof: Roof) -> list[Features]:
+            observed.append((surroundings, function(surroundings, rays, roof)))
             return observed[-1][1]
 
         return asked
@@ -106,7 +110,8 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     with tempfile.TemporaryDirectory() as made:
         ablation.make_plan(results, ablation.own_settings(results, settings), rule, Path(made))
     placed = score_files.place_results(results, recorded.truth, recorded.true_poses)
-    ((parts, features),) = observed
+    ((surroundings, features),) = observed
+    parts = surroundings.walls
     sides_m = [
         placed.motion[:2, :2] @ (part.ends + across_m * part.line.normal).T
         for part in parts
@@ -121,11 +126,16 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     for name, of_thing in reversed(_OF_TRUTH.items()):
         kind[owner[verdict == name]] = of_thing
     taught = np.flatnonzero(kind >= 0).tolist()
+    of_corners = kind[surroundings.corners]
+    corners = np.zeros((len(things.KINDS), len(things.KINDS)), np.int64)
+    for pair in of_corners[(of_corners >= 0).all(axis=1)]:
+        np.add.at(corners, (pair, pair[::-1]), 1)
     rows = [[getattr(features[row], name) for name in things.DENSITIES] for row in taught]
     return Surfaces(
         features=np.array(rows, float).reshape(len(taught), len(things.DENSITIES)),
         kind=kind[taught],
         length_m=np.array([parts[row].length_m for row in taught]),
+        corners=corners,
     )
 
 
@@ -147,6 +157,13 @@ def fit(of: Surfaces) -> dict[str, FloatArray]:
         count += _OF_ALL * usual
         shares[name] = count / count.sum(axis=1, keepdims=True)
     return shares
+
+
+def fit_corners(corners: IntArray) -> FloatArray:
+    """Return how many times as often as by chance kinds meet (k, k), given how often they do."""
+    share = (corners.sum(axis=1) + 1) / (corners.sum() + len(corners))
+    by_chance = corners.sum() * np.outer(share, share)
+    return (corners + _OF_ALL) / (by_chance + _OF_ALL)
 
 
 def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
@@ -190,4 +207,5 @@ def _join(found: Sequence[Surfaces]) -> Surfaces:
         features=np.concatenate([of.features for of in found]),
         kind=np.concatenate([of.kind for of in found]),
         length_m=np.concatenate([of.length_m for of in found]),
+        corners=np.sum([of.corners for of in found], axis=0),
     )

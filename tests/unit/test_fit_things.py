@@ -20,7 +20,8 @@ def surfaces(kinds, **values):
     features = np.full((len(kinds), len(things.DENSITIES)), NAN)
     for name, of_each in values.items():
         features[:, list(things.DENSITIES).index(name)] = of_each
-    return fit_things.Surfaces(features, np.array(kinds), np.ones(len(kinds)))
+    corners = np.zeros((len(things.KINDS),) * 2, np.int64)
+    return fit_things.Surfaces(features, np.array(kinds), np.ones(len(kinds)), corners)
 
 
 LEARNT = surfaces([things.WALL] * 6 + [things.LEAF] * 2, n_inner=[2, 2, 2, 2, 1, 0, 0, 0])
@@ -40,6 +41,19 @@ def test_ranges_have_the_shares_that_were_counted_and_a_little_of_all():
     np.testing.assert_allclose(found[things.WALL], (np.array([1, 1, 4]) + 2 * usual) / 8)
     np.testing.assert_allclose(found[things.LEAF], (np.array([2, 0, 0]) + 2 * usual) / 4)
     np.testing.assert_allclose(found[things.OUTSIDE], usual)
+
+
+def test_kinds_that_meet_more_often_than_by_chance_attract_each_other():
+    """Eight corners of walls and as many of furniture, two of both: by chance nine of each."""
+    corners = np.zeros((4, 4), np.int64)
+    walls_and_furniture = np.ix_([things.WALL, things.FURNITURE], [things.WALL, things.FURNITURE])
+    corners[walls_and_furniture] = [[16, 2], [2, 16]]
+    found = fit_things.fit_corners(corners)
+    by_chance = 36 * (19 / 40) ** 2
+    np.testing.assert_allclose(
+        found[walls_and_furniture], (np.array([[16, 2], [2, 16]]) + 2) / (by_chance + 2)
+    )
+    np.testing.assert_allclose(found[things.LEAF, things.OUTSIDE], 1, atol=0.05)
 
 
 def test_what_was_never_seen_leaves_all_ranges_alike():

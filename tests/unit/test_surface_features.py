@@ -61,6 +61,15 @@ class TestBlocks:
         """Of it the front and two reveals are seen."""
         assert math.isinf(look(self.sides()[:3]).block_m)
 
+    def test_a_cupboard_at_a_wall_is_as_deep_as_it_stands_before_that(self):
+        """Seen are its front and, of one side, from corner to wall; the wall itself goes on."""
+        front, side = wall(1, 0.6, 3, 0.6, NAN), wall(1, 0, 1, 0.6, NAN)
+        room = [wall(*of, NAN) for of in ((0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0))]
+        found = [look([front, side, *room], number).depth_m for number in range(3)]
+        assert found == [pytest.approx(0.6, abs=0.03)] * 2 + [math.inf]
+        corners = Surroundings([front, side, *room]).corners
+        assert corners.tolist() == [[0, 1]]
+
     def test_a_wall_with_both_sides_is_no_block(self):
         assert math.isinf(look([wall(0, 0, 4, 0, 0.4)]).block_m)
 

@@ -13,6 +13,7 @@ from scanplan.plan.model.surface_features import Features
 from scanplan.plan.model.things import FURNITURE, LEAF, OUTSIDE, WALL, weigh_things
 
 NAN, INF = math.nan, math.inf
+NO_CORNER = np.empty((0, 2), np.int64)
 
 
 def weigh(found):
@@ -35,6 +36,7 @@ PARTITION = Features(
     before_m=INF,
     back_m=INF,
     block_m=INF,
+    depth_m=INF,
     turned_deg=0.2,
     through_glass=0.0,
     roofed=1.0,
@@ -122,6 +124,40 @@ def test_a_building_without_furniture_has_less_of_it():
     assert weigh_things([]).shape == (0, 4)
 
 
+FRONT = replace(ROOM_WALL, length_m=1.4, n_inner=1, n_outer=1, before_m=0.5, depth_m=0.45)
+"""Of a cupboard that nobody looked over, or of a wall that steps forward."""
+
+
+@pytest.mark.parametrize("side", [CUPBOARD, PARTITION, OPEN_LEAF])
+def test_what_meets_at_an_outer_corner_is_of_one_thing(side):
+    """Of a cupboard both are furniture, of a wall or a leaf neither is."""
+    alone, met = (
+        weigh_things([FRONT, side], corners=c)[0] for c in (NO_CORNER, np.array([[0, 1]]))
+    )
+    is_furniture = side is CUPBOARD
+    assert (met[FURNITURE] > alone[FURNITURE] + 0.1) == is_furniture
+    assert (met[FURNITURE] < alone[FURNITURE] - 0.1) == (not is_furniture)
+
+
+@given(st.data())
+def test_what_sides_in_a_row_say_of_one_another_is_exact(data):
+    """Four surfaces, each but the last with the next one: all 256 ways to be, one by one."""
+    log_p = [data.draw(st.lists(st.floats(-5, 0), min_size=4, max_size=4)) for _ in range(4)]
+    weight = np.array(log_p)
+    found = things.agree_at_corners(weight, np.array([[0, 1], [2, 1], [2, 3]]))
+    agree = np.log(things.CORNERS)
+    whole = sum(weight[i].reshape([-1 if i == j else 1 for j in range(4)]) for i in range(4))
+    whole = whole + agree[:, :, None, None] + agree[None, :, :, None] + agree[None, None]
+    for i in range(4):
+        others = tuple(j for j in range(4) if j != i)
+        own = np.logaddexp.reduce(whole, axis=others)
+        np.testing.assert_allclose(found[i], own - np.logaddexp.reduce(own), atol=1e-9)
+
+
+def test_no_corner_changes_nothing():
+    assert (weigh_things([FRONT], corners=NO_CORNER) == weigh_things([FRONT])).all()
+
+
 @pytest.mark.parametrize(
     ("found", "kind", "change"),
     [
@@ -135,6 +171,7 @@ def test_a_building_without_furniture_has_less_of_it():
         (PARTITION, WALL, {"joint_m": INF}),
         (PARTITION, WALL, {"block_m": 0.8}),
         (RACK, FURNITURE, {"block_m": INF}),
+        (FRONT, FURNITURE, {"depth_m": INF}),
         (OPEN_LEAF, LEAF, {"hinge_m": 1.5}),
         (OPEN_LEAF, LEAF, {"length_m": 2.0}),
         (OPEN_LEAF, LEAF, {"turned_deg": 0.1}),

@@ -1,5 +1,6 @@
 """What is asked of a surface to tell a wall from what stands in a room, or outside."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,10 +22,10 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 _DOOR_M = (0.5, 2.4)  # openings that leaves hang in, single and double ones
 _BEFORE_M = (0.25, 1.2)  # furniture stands so far before its wall
 _DEEP_M = 1.0  # furniture is no deeper
+_JOINED_M = 0.3  # surfaces no farther apart are of one thing, or one building
 _APART_M = 2.0  # farther off a surface stands alone
 _ACROSS = 0.9  # cosine of normals: flatter than that one surface goes on as the other
 _ALONG = 0.3  # of its length: what overlaps less is beside it, not behind
-_JOINED_M = 0.3  # surfaces no farther apart are of one thing, or one building
 _SEEN = 0.5  # witnesses of a cell that returns came from, or that rays passed
 
 
@@ -62,6 +63,8 @@ class Features:
     block_m : float
         How deep the block is that it is a side of: the shorter side of the rectangle around all
         that it is joined to, if most of that was seen from outside alone, the back with it.
+    depth_m : float
+        The same of all that it meets at outer corners, one after the other.
     turned_deg : float
         From the nearest main direction of the building, 0 to 45.
     through_glass : float
@@ -84,6 +87,7 @@ class Features:
     before_m: float
     back_m: float
     block_m: float
+    depth_m: float
     turned_deg: float
     through_glass: float
     roofed: float
@@ -131,12 +135,14 @@ class Surroundings:
                 before_m=self._find_before_m(number),
                 back_m=self._find_back_m(number),
                 block_m=float(self._block_m[number]),
+                depth_m=float(self._depth_m[number]),
                 turned_deg=float(self._turned_deg[number]),
                 through_glass=float(through_glass[number]),
                 roofed=float(roofed[number]),
             )
-            for number, (wall, shown) in enumerate(zip(self.walls, witnesses, strict=True))
-            for n_inner, n_outer in [self._count_corners(number)]
+            for number, (wall, shown, (n_inner, n_outer, _)) in enumerate(
+                zip(self.walls, witnesses, self._meetings, strict=True)
+            )
         ]
 
     @cached_property
@@ -175,21 +181,33 @@ class Surroundings:
         return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
 
     @cached_property
+    def corners(self) -> IntArray:
+        """Pairs (k, 2) of surfaces that meet at an outer corner: each goes back from the other."""
+        back = [behind for _, _, behind in self._meetings]
+        pairs = [(i, j) for i, of in enumerate(back) for j in sorted(of) if i < j and i in back[j]]
+        return np.array(pairs, np.int64).reshape(-1, 2)
+
+    @cached_property
+    def _depth_m(self) -> FloatArray:
+        """How deep what each surface (n,) meets at outer corners is."""
+        depth_m = np.full(len(self.walls), math.inf)
+        for own in self._group(self.corners):
+            if len(own) > 1:
+                depth_m[own] = rectangle_sides_m(self._outline(own))[0]
+        return depth_m
+
+    @cached_property
     def _block_m(self) -> FloatArray:
         """How deep the block is that each surface (n,) is a side of, with what it is joined to."""
         reach_m = [_JOINED_M + wall.half_m for wall in self.walls]
-        one, other = self._tree.query(self._lines, predicate="dwithin", distance=reach_m)
-        count = len(self.walls)
-        links = coo_array((np.ones(len(one)), (one, other)), shape=(count, count))
-        _, group = connected_components(links, directed=False)
-        of_groups = np.split(np.argsort(group, kind="stable"), np.bincount(group).cumsum()[:-1])
+        joined = self._tree.query(self._lines, predicate="dwithin", distance=reach_m)
         ends_m = np.array([wall.ends for wall in self.walls]).reshape(-1, 2, 2)
         normal = np.array([wall.line.normal for wall in self.walls]).reshape(-1, 2)
         is_single = np.array([not wall.right for wall in self.walls], bool)
         length_m = np.array([wall.length_m for wall in self.walls])
-        block_m = np.full(count, math.inf)
-        for own in of_groups:
-            outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
+        block_m = np.full(len(self.walls), math.inf)
+        for own in self._group(joined.T):
+            outline = self._outline(own)
             middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
             off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
             is_outer = is_single[own] & (off_m > 0)
@@ -201,23 +219,42 @@ class Surroundings:
                     block_m[own] = rectangle_sides_m(outline)[0]
         return block_m
 
+    def _group(self, pairs: IntArray) -> list[IntArray]:
+        """Return the surfaces of each group that pairs (k, 2) hold together."""
+        count = len(self.walls)
+        links = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
+        _, group = connected_components(links, directed=False)
+        return np.split(np.argsort(group, kind="stable"), np.bincount(group).cumsum()[:-1])
+
+    def _outline(self, own: IntArray) -> shapely.MultiPoint:
+        return shapely.MultiPoint(np.concatenate([self.walls[row].ends for row in own]))
+
     def _near(self, number: int, place: shapely.Geometry, within_m: float) -> list[int]:
         near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
         return [other for other in near.tolist() if other != number]
 
-    def _count_corners(self, number: int) -> tuple[float, float]:
-        """Return at how many ends other surfaces come forward, and at how many they go back."""
+    @cached_property
+    def _meetings(self) -> list[tuple[float, float, set[int]]]:
+        """Of each at how many ends others come forward, at how many they go back, and which do."""
+        return [self._find_meetings(number) for number in range(len(self.walls))]
+
+    def _find_meetings(self, number: int) -> tuple[float, float, set[int]]:
         wall = self.walls[number]
         reach_m = BEHIND_M + wall.half_m
         n_inner = n_outer = 0
+        behind: set[int] = set()
         for end_m in wall.ends:
-            near = [self.walls[i] for i in self._near(number, shapely.Point(end_m), reach_m)]
-            across = [o for o in near if abs(o.line.normal @ wall.line.normal) < _ACROSS]
-            off_m = np.array([wall.line.offset_m(o.ends) for o in across]).reshape(-1, 2)
+            near = self._near(number, shapely.Point(end_m), reach_m)
+            cosine = [abs(self.walls[i].line.normal @ wall.line.normal) for i in near]
+            across = [i for i, same in zip(near, cosine, strict=True) if same < _ACROSS]
+            ends_m = np.array([self.walls[i].ends for i in across]).reshape(-1, 2, 2)
+            off_m = wall.line.offset_m(ends_m)
             comes_forward = off_m.max(axis=1) > reach_m
+            goes_back = ~comes_forward & (off_m.min(axis=1) < -reach_m)
             n_inner += bool(comes_forward.any())
-            n_outer += bool((~comes_forward & (off_m.min(axis=1) < -reach_m)).any())
-        return float(n_inner), float(n_outer)
+            n_outer += bool(goes_back.any())
+            behind.update(itertools.compress(across, goes_back.tolist()))
+        return float(n_inner), float(n_outer), behind
 
     def _find_joint_m(self, number: int) -> float:
         line, half_m = self._lines[number], self.walls[number].half_m

@@ -55,9 +55,10 @@ def label_surfaces(
     """
     parts = [found for wall in walls for found in label_wall(wall, evidence)]
     roof = find_roof([part for part, _ in parts], evidence.rays)
-    found = observe_surfaces([part for part, _ in parts], evidence.rays, roof)
+    surroundings = Surroundings([part for part, _ in parts])
+    found = observe_surfaces(surroundings, evidence.rays, roof)
     designed = _weigh_designed([part for part, _ in parts], evidence.designed)
-    p = things.weigh_things(found, designed)
+    p = things.weigh_things(found, designed, surroundings.corners)
     kinds = things.choose_kinds(p)
     weighed = list(zip(parts, kinds, p[:, things.WALL].tolist(), strict=True))
     kept = [
@@ -106,8 +107,9 @@ def _weigh_designed(parts: Sequence[PlanWall], designed: DesignedWalls | None) -
     return np.array(weights, float)
 
 
-def observe_surfaces(parts: Sequence[PlanWall], rays: RaySet, roof: Roof) -> list[Features]:
+def observe_surfaces(surroundings: Surroundings, rays: RaySet, roof: Roof) -> list[Features]:
     """Return the features of parts of walls, whose openings are known."""
+    parts = surroundings.walls
     counts = [wall_labels.count_wall(part, rays) for part in parts]
     through_glass = glass_views.find_glass_shares(parts, rays)
-    return Surroundings(parts).observe(counts, through_glass, roof.roofed)
+    return surroundings.observe(counts, through_glass, roof.roofed)
