@@ -56,6 +56,19 @@ def test_what_is_more_likely_wrong_is_left_out_where_it_ends_loose_and_bounds_no
     assert NEW in leave_scraps(with_wall(beside, p_true=0.4)).walls["wall"]
 
 
+@pytest.mark.parametrize(("length_m", "is_left_out"), [(0.12, True), (0.5, False)])
+def test_what_is_hardly_longer_than_its_ends_err_by_is_left_out_in_the_midst_of_a_room(
+    length_m, is_left_out
+):
+    """It hangs on the wall between the rooms; the outline of the first goes around it."""
+    end_m = 4.0 - length_m
+    nib = shapely.box(end_m, 1.4, 4.0, 1.5)
+    plan = with_wall((end_m, 1.5, 4.05, 1.5))
+    first = floorplan_making.ROOMS[0].difference(nib)
+    plan = replace(plan, rooms=floorplan_making.rooms([first, floorplan_making.ROOMS[1]]))
+    assert (NEW not in leave_scraps(plan).walls["wall"]) == is_left_out
+
+
 def test_a_wall_that_is_mostly_a_way_from_a_room_into_itself_goes_with_it():
     line, way = (1.0, 0.6, 3.0, 0.6), (1.3, 0.6, 2.9, 0.6)
     into_itself = with_wall(line, [(way, "passage", 0.0, 2.5, 0, 0)])

@@ -18,6 +18,7 @@ BARE = ("passage", "gap")
 """Types of openings without a leaf or a pane."""
 _PIECE_M = 2 * CORNER_M  # as far as a wall of the greatest usual thickness is deep
 _WITHIN = 0.9  # of a wall's ground that lies in a thicker one: its ends alone are outside
+_FREE = 0.6  # of what is around the end of a wall: half is a room's where a facade goes on
 _OUTSIDE_M = 2.0  # behind a facade: leaves of windows, reveals, what stands on a sill
 _OBLIQUE = 0.17  # sine of ten degrees: what is turned less goes on as the back of a recess
 
@@ -28,14 +29,15 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
     Slits narrower than their ends err by, and of walls that no person drew and that were seen from
     one side only:
 
-    - short pieces that end loose and bound no room, openings into nothing not counted: reveals,
-      leaves, sides of furniture; longer ones, too, that are more likely wrong than right;
+    - short pieces that end loose and bound no room, openings into nothing not counted, or end in a
+      room: reveals, leaves, sides of furniture; longer ones that bound none, too, that are more
+      likely wrong than right;
     - what crosses a facade or lies behind it, bounds no room and is turned away from it: what is
       seen through windows;
     - what lies in a thicker wall: its one side once more.
     """
     is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan)
-    is_left_out |= _find_within(plan)
+    is_left_out |= _find_within(plan) | _find_nibs(plan)
     is_left_out &= ~plan.thick & (np.asarray(plan.walls["corrected"], str) == "")
     is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
     is_wide |= np.asarray(plan.openings["corrected"], str) != ""
@@ -80,6 +82,21 @@ def _find_pieces(plan: FloorPlan) -> BoolArray:
     is_piece[plan.hosts[(plan.hosts >= 0) & ~find_nowhere(plan)]] = False
     unlikely = np.asarray(plan.walls.get("p_true", np.ones(len(lines_m))), float) < 1 / 2
     return (is_piece | unlikely) & ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+
+
+def _find_nibs(plan: FloorPlan) -> BoolArray:
+    """Return which walls (n,) are no longer than what both ends err by, and one ends in a room.
+
+    The room's outline goes around these, so that they bound it on all sides.
+    """
+    lines_m = centrelines_m(plan.walls)
+    is_short = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) < 2 * END_M
+    around = overlays.buffer_shapes(shapely.points(lines_m[is_short].reshape(-1, 2)), END_M)
+    within_m2 = shapely.area(overlays.intersect_areas(around, overlays.unite_areas(plan.areas)))
+    ends_free = (within_m2 > _FREE * shapely.area(around)).reshape(-1, 2)
+    is_nib = np.zeros(len(lines_m), bool)
+    is_nib[is_short] = ends_free.any(axis=1)
+    return is_nib
 
 
 def _sum_nowhere(plan: FloorPlan) -> FloatArray:
