@@ -46,10 +46,23 @@ def listed(project, *arguments):
 def test_the_product_lists_what_a_user_may_ask_for_and_nothing_of_it(project):
     product, all_rules = listed(project), listed(project, "comparison")
     stages = {path.stem for path in (project.folder / "scripts/thesis/stages").glob("*.py")}
-    assert {"all", "assemble_plan", "write_report"} <= product and len(product) <= 28
+    assert {"all", "floors", "assemble_plan", "write_report"} <= product and len(product) <= 25
     assert not stages & product
     added = {"thesis", "thesis_more", "comparison", "write_comparison", "extract_walls"}
+    added |= {"build_hulls", "build_visibility"}
     assert all_rules == product | stages | added
+
+
+def test_an_ordering_that_a_plan_asks_for_brings_its_stages(project):
+    file = project.folder / "other.yaml"
+    usual = listed(project)
+    for changed, stage in (
+        ("plan: {method: hull}", "build_hulls"),
+        ("plan: {method: visibility}", "build_visibility"),
+        ("selection: {stop: {min_gain_m2: 1.0}}", "build_hulls"),
+    ):
+        file.write_text(changed)
+        assert stage in listed(project, "--configfile", "other.yaml") - usual, changed
 
 
 def test_the_demo_runs_nothing_of_it(project):

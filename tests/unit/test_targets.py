@@ -43,7 +43,8 @@ def test_rules_and_results_are_targets():
         *("comparison", "thesis", "thesis_more", "results/thesis/report.html"),
         *("results/thesis/ring_rooms_1/poses.parquet", "results/demo/comparison.html"),
         *("./results/demo/evaluation/walls.parquet", "results/demo/figures/area.svg"),
-        "results/demo/walls/cluster_ransac.parquet",
+        *("results/demo/walls/cluster_ransac.parquet", "results/demo/selection/hull.parquet"),
+        *("results/demo/hulls.parquet", "results/demo/visibility.parquet"),
     ],
 )
 def test_what_the_laboratory_alone_makes_asks_for_it(word):
@@ -59,6 +60,6 @@ def test_what_another_workflow_makes_is_told_with_how_to_run_it():
 
 def test_what_a_plan_is_made_of_asks_for_no_laboratory():
     words = ["--cores", "2", "all", "results/demo/plan/plan.svg", "", "results", "/"]
-    words += ["results/demo/evaluation/plan.parquet", "results/demo/selection/hull.parquet"]
+    words += ["results/demo/evaluation/plan.parquet", "results/demo/observations.parquet"]
     words += ["--configfile", "config/thesis.yaml", "--config", "dataset=comparison"]
     assert not asks_for_laboratory(words)

@@ -102,10 +102,12 @@ rule grown:
         grown_datasets,
 
 
-rule list_floors:
-    """Tell in one table what every floor was like at each of its surveys, and what had changed."""
+rule floors:
+    """Tell of all floors over time: areas, doors, and what changed from each survey to the next."""
     input:
         unpack(tables_of_floors),
+        # which the table leads to
+        beside=pages_of_floors,
         page=FLOORS_PAGE,
     output:
         csv="results/floors.csv",
@@ -123,11 +125,3 @@ rule list_floors:
         surveys=lambda wildcards: surveys_of_floors(),
     script:
         "../../scripts/list_floors.py"
-
-
-rule floors:
-    """Tell of all floors over time: areas, doors, and what changed from each survey to the next."""
-    input:
-        "results/floors.csv",
-        "results/floors.html",
-        changes_of_floors,

@@ -3,8 +3,6 @@
 
 
 ruleorder: gather_chunks > observe_walls
-ruleorder: gather_chunks > build_visibility
-ruleorder: gather_chunks > build_hulls
 ruleorder: gather_scan_chunks > register_scans
 
 
@@ -70,22 +68,30 @@ use rule observe_walls as observe_walls_chunk with:
         "benchmarks/{dataset}/observe_walls_{chunk}.tsv"
 
 
-use rule build_visibility as build_visibility_chunk with:
-    output:
-        visibility=temp("results/{dataset}/visibility_{chunk}.parquet"),
-    log:
-        "logs/{dataset}/build_visibility_{chunk}.log",
-    benchmark:
-        "benchmarks/{dataset}/build_visibility_{chunk}.tsv"
+if is_ordered_by("visibility"):
+
+    ruleorder: gather_chunks > build_visibility
+
+    use rule build_visibility as build_visibility_chunk with:
+        output:
+            visibility=temp("results/{dataset}/visibility_{chunk}.parquet"),
+        log:
+            "logs/{dataset}/build_visibility_{chunk}.log",
+        benchmark:
+            "benchmarks/{dataset}/build_visibility_{chunk}.tsv"
 
 
-use rule build_hulls as build_hulls_chunk with:
-    output:
-        hulls=temp("results/{dataset}/hulls_{chunk}.parquet"),
-    log:
-        "logs/{dataset}/build_hulls_{chunk}.log",
-    benchmark:
-        "benchmarks/{dataset}/build_hulls_{chunk}.tsv"
+if is_ordered_by("hulls"):
+
+    ruleorder: gather_chunks > build_hulls
+
+    use rule build_hulls as build_hulls_chunk with:
+        output:
+            hulls=temp("results/{dataset}/hulls_{chunk}.parquet"),
+        log:
+            "logs/{dataset}/build_hulls_{chunk}.log",
+        benchmark:
+            "benchmarks/{dataset}/build_hulls_{chunk}.tsv"
 
 
 def chunks_of_table(wildcards):

@@ -317,12 +317,24 @@ def extractor_settings(wildcards):
 
 
 def order_tables(wildcards):
-    """The tables that the job's method needs, by name; that of the hulls where areas decide."""
-    method = methods.METHODS[wildcards.method]
-    stop = DATASETS[wildcards.dataset].settings["selection"]["stop"]
-    by_area = method.needs_hulls or stop["min_gain_m2"] is not None
-    tables = (*method.tables, *(["hulls"] if by_area else []))
+    """The tables that the job's method needs, by name."""
+    tables = tables_to_order(wildcards.dataset, wildcards.method)
     return {table: f"results/{wildcards.dataset}/{table}.parquet" for table in tables}
+
+
+def tables_to_order(name, method):
+    """What a method needs to order a dataset's scans beside these; the hulls where areas decide."""
+    stop = DATASETS[name].settings["selection"]["stop"]
+    by_area = methods.METHODS[method].needs_hulls or stop["min_gain_m2"] is not None
+    return (*methods.METHODS[method].tables, *(["hulls"] if by_area else []))
+
+
+def is_ordered_by(table):
+    """Whether a plan's scans are ordered by a table, or all orderings are compared: else no rule makes it."""
+    return LABORATORY or any(
+        table in tables_to_order(name, found.settings["plan"]["method"])
+        for name, found in DATASETS.items()
+    )
 
 
 def order_settings(wildcards):

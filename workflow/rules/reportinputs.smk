@@ -173,7 +173,7 @@ def surveys_of_floors():
     ]
 
 
-def changes_of_floors(wildcards):
+def pages_of_floors(wildcards):
     """The pages of what changed on every floor, to which the table leads, and the reports."""
     pages = []
     for of in surveys_of_floors():

@@ -20,26 +20,28 @@ rule observe_walls:
         "../../scripts/observe_walls.py"
 
 
-rule build_visibility:
-    """Draw the free space that every scan looked through."""
-    input:
-        scans="results/{dataset}/scans.parquet",
-        registration="results/{dataset}/registration.parquet",
-    output:
-        visibility="results/{dataset}/visibility.parquet",
-    log:
-        "logs/{dataset}/build_visibility.log",
-    benchmark:
-        "benchmarks/{dataset}/build_visibility.tsv"
-    threads: 2
-    resources:
-        mem_mb=grown(mem_mb=1500),
-        runtime=grown(runtime=30),
-    params:
-        code=code_of("build_visibility"),
-        settings=setting(stage_settings.select_visibility),
-    script:
-        "../../scripts/build_visibility.py"
+if is_ordered_by("visibility"):
+
+    rule build_visibility:
+        """Draw the free space that every scan looked through."""
+        input:
+            scans="results/{dataset}/scans.parquet",
+            registration="results/{dataset}/registration.parquet",
+        output:
+            visibility="results/{dataset}/visibility.parquet",
+        log:
+            "logs/{dataset}/build_visibility.log",
+        benchmark:
+            "benchmarks/{dataset}/build_visibility.tsv"
+        threads: 2
+        resources:
+            mem_mb=grown(mem_mb=1500),
+            runtime=grown(runtime=30),
+        params:
+            code=code_of("build_visibility"),
+            settings=setting(stage_settings.select_visibility),
+        script:
+            "../../scripts/build_visibility.py"
 
 
 rule order_scans:

@@ -57,10 +57,12 @@ _COMPARED_WITH_TRUTH = (
     *(f"evaluation/{table}.parquet" for table in ("walls", "walls_aligned", "oracle", "seconds")),
     *("figures/evaluation.svg", "figures/oracle_shares.svg"),
 )
-COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH)
-"""Results of a dataset that the comparison alone has stages for."""
-OF_ALL_SCANS = "walls"
-"""The folder of what extractors find in all scans, which the comparison alone asks for."""
+_COVERED = tuple(f"{table}.parquet" for table in ("hulls", "visibility"))
+COMPARISON = (*_COMPARED, *_COMPARED_WITH_TRUTH, *_COVERED)
+"""Results of a dataset that a plan by the usual ordering has no stages for."""
+_OF_ALL_SCANS, _ORDERINGS = "walls", "selection"
+COMPARED_FOLDERS = (_OF_ALL_SCANS, _ORDERINGS)
+"""Folders of what extractors find in all scans, and of orderings beside the plan's own."""
 CHANGES = ("parquet", "geojson", "svg", "pdf", "png", "dxf", "html", "txt")
 """Suffixes of what is made of two surveys of a floor."""
 GROWN = ("parquet", "csv", "geojson", "svg", "pdf", "png", "dxf", "txt")
@@ -288,7 +290,7 @@ def list_results(found: Dataset) -> list[str]:
     Where the truth is known the plan and the poses are evaluated, too.
     """
     files = [f"{table}.parquet" for table in _TABLES]
-    files += [f"selection/{found.settings['plan']['method']}.parquet", *_DRAWN]
+    files += [f"{_ORDERINGS}/{found.settings['plan']['method']}.parquet", *_DRAWN]
     if found.corrections:
         files += [f"{table.replace('plan/', 'plan/corrected/')}.parquet" for table in _PLAN]
     files += export_formats.list_exports(found.settings["plan"]["export"]["formats"])
@@ -310,8 +312,8 @@ def list_comparison(found: Dataset, methods: Sequence[str], extractors: Sequence
     list of str
     """
     others = [method for method in methods if method != found.settings["plan"]["method"]]
-    files = [f"selection/{method}.parquet" for method in others]
-    files += [f"{OF_ALL_SCANS}/{extractor}.parquet" for extractor in extractors]
+    files = [f"{_ORDERINGS}/{method}.parquet" for method in others]
+    files += [f"{_OF_ALL_SCANS}/{extractor}.parquet" for extractor in extractors]
     files += ["hulls.parquet", *_COMPARED]
     if found.truth:
         files += _COMPARED_WITH_TRUTH

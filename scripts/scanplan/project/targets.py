@@ -69,7 +69,7 @@ def _is_of_laboratory(word: str) -> bool:
     if folder != "results" or len(rest) < 2:
         return word in dataset_files.OF_LABORATORY
     name, *file = rest
-    is_compared = file[0] == dataset.OF_ALL_SCANS or "/".join(file) in dataset.COMPARISON
+    is_compared = file[0] in dataset.COMPARED_FOLDERS or "/".join(file) in dataset.COMPARISON
     return name == dataset_files.RESERVED or is_compared
 
 
