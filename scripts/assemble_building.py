@@ -11,7 +11,7 @@ from scanplan.exports.building.dxf_storeys import format_building_dxf
 from scanplan.exports.building.ifc_storeys import merge_ifc
 from scanplan.exports.building.placed_storey import PlacedStorey
 from scanplan.exports.building.sheet_set import compose_sheets
-from scanplan.exports.sheet.accuracy import SensorErrors
+from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import SheetFacts, summarise_survey
@@ -121,7 +121,7 @@ def _compose_sheets(
         stated = {"project": own["project"] or name, "storey": storey["name"]}
         stated |= {"version": common[number].version, "locale": common[number].locale}
         sheet = {"number": number + 1, "of": len(storeys)}
-        sensor = SensorErrors(own["range_offset_sigma_m"], own["range_scale_sigma"])
+        sensor = SensorErrors(own["range_offset_sigma_m"], CLOCKS_SIGMA)
         facts.append(summarise_survey(evidence, **stated, **sheet, sensor=sensor))
     rotations_rad = [
         math.radians(storey["place"][2]) if storey["aligned"] else None for storey in storeys

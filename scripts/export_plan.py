@@ -8,7 +8,7 @@ from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.model_origin import find_site
 from scanplan.exports.sheet import composition, title
-from scanplan.exports.sheet.accuracy import SensorErrors
+from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
 from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import summarise_survey
@@ -43,7 +43,7 @@ def export_plan(
         `assumed_thickness_m` and `assumed_height_m`, see `floorplan.FloorPlan`; `map_cell_m`, edge
         of the map's cells; `turn`, `project` and `storey` of the sheet, see
         `composition.compose_sheet`; `dxf_unit`, mm or m; `units`, see `locale.Locale`;
-        `range_offset_sigma_m` and `range_scale_sigma`, see `accuracy.SensorErrors`.
+        `range_offset_sigma_m`, see `accuracy.SensorErrors`.
     receiver : dict, optional
         `words` of his language and names of `layers`, see `words_file`; English and ours without.
     version : str
@@ -61,7 +61,7 @@ def export_plan(
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
-        sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
+        sensor=SensorErrors(settings["range_offset_sigma_m"], CLOCKS_SIGMA),
         locale=locale,
         frame=title.state_frame(site, drawn.georeference, locale),
     )

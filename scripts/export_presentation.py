@@ -8,7 +8,7 @@ from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.model_origin import find_site
-from scanplan.exports.sheet.accuracy import SensorErrors
+from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
 from scanplan.exports.sheet.locale import make_locale
 from scanplan.exports.sheet.title import state_frame, summarise_survey
 from scanplan.plan import floorplan_files
@@ -57,7 +57,7 @@ def export_presentation(
         project=settings["project"] or "",
         storey=settings["storey"] or "",
         version=version,
-        sensor=SensorErrors(settings["range_offset_sigma_m"], settings["range_scale_sigma"]),
+        sensor=SensorErrors(settings["range_offset_sigma_m"], CLOCKS_SIGMA),
         north_deg=site.north_deg,
         locale=locale,
         frame=state_frame(site, measured.georeference, locale),

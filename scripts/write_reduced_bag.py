@@ -46,7 +46,7 @@ def write_reduced_bag(
     reading, poses : dict
         Sections `input` and `poses`.
     cells, playing : dict
-        Keywords of `wall_cells.WallCellSettings` and of `playing.PlayingSelection`.
+        Keywords of `wall_cells.WallCellSettings` and `min_new_share` of `playing.PlayingSelection`.
 
     Raises
     ------

@@ -10,7 +10,7 @@ import numpy as np
 import wall_scans
 
 from reference import cluster_ransac as literal_clusters
-from scanplan.extraction import cluster_ransac, normals
+from scanplan.extraction import cluster_ransac, iterative_ransac, normals
 from scanplan.extraction.extractors import (
     EXTRACTORS,
     find_wall_segments,
@@ -26,8 +26,13 @@ _ROUTES = {"demo_office": ("given", 0.4), "ring_office": ("rooms", 1.2)}
 """Building to the way through it and the metres from scan to scan."""
 
 _LITERAL_EVERY = 4  # points: the literal method's time grows with their square
-_LITERAL_KEYS = ("reach_deg", "max_tilt_deg", "bandwidth_m", "inlier_m", "min_points")
-_TRIALS = cluster_ransac.ClusterRansacSettings.trials
+_LITERAL_KEYS = ("reach_deg", "inlier_m")
+_LITERAL_CONSTANTS = {
+    "max_tilt_deg": cluster_ransac.ClusterRansacSettings.max_tilt_deg,
+    "bandwidth_m": cluster_ransac.ClusterRansacSettings.bandwidth_m,
+    "min_points": cluster_ransac.ClusterRansacSettings.min_points,
+    "max_trials": cluster_ransac.ClusterRansacSettings.trials,
+}
 _CELL_M = 0.02  # finer than walls scatter
 _SLICE_M = (0.9, 2.1)  # above furniture, below lintels
 _MIN_LENGTH_M = 0.4  # that of our segments
@@ -85,8 +90,8 @@ def _print_speed(
     print(
         f"walls, {building}, cluster against iterative RANSAC:"
         f" {theirs_ms / ours_ms:.1f} times faster; normals are {normals_ms / ours_ms:.0%} of it;"
-        f" {_TRIALS} trials a cluster against"
-        f" {settings['iterative_ransac']['trials']} a plane",
+        f" {cluster_ransac.ClusterRansacSettings.trials} trials a cluster against"
+        f" {iterative_ransac.IterativeRansacSettings.trials} a plane",
         flush=True,
     )
 
@@ -106,7 +111,7 @@ def _print_literal(
 ) -> None:
     scan_id, xyz_m = scan
     few_m = sensor_frame.centre_in_order(xyz_m, survey.sensors[scan_id])[::_LITERAL_EVERY]
-    limits = {key: settings[key] for key in _LITERAL_KEYS} | {"max_trials": _TRIALS}
+    limits = {key: settings[key] for key in _LITERAL_KEYS} | _LITERAL_CONSTANTS
     literal_ms = _milliseconds(
         lambda: literal_clusters.lines(few_m, **limits, rng=np.random.default_rng(1))
     )

@@ -1,5 +1,7 @@
 """Wall segments as a stage finds them, with settings that suit the toy room."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from helpers import toy_rooms
@@ -14,21 +16,15 @@ SETTINGS = {
     "thesis_cluster_ransac": toy_rooms.LIMITS | _CLUSTERS | _THESIS,
     "thesis_iterative_ransac": toy_rooms.LIMITS | _THESIS,
 }
-MAX_RMSE_M = 0.025
 
 
-def extract(
-    name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, max_rmse_m=MAX_RMSE_M, **more
-):
+def extract(name, xyz_m, sensor_xyz_m=toy_rooms.SENSOR, *, planar=False, max_rmse_m=None, **more):
     """Return the wall segments of a scan; `more` are further settings."""
-    return find_wall_segments(
-        3,
-        xyz_m,
-        sensor_xyz_m=np.asarray(sensor_xyz_m, float),
-        finder=make_wall_finder(
-            EXTRACTORS[name], SETTINGS[name] | more | {"max_rmse_m": max_rmse_m}, planar=planar
-        ),
-    )
+    finder = make_wall_finder(EXTRACTORS[name], SETTINGS[name] | more, planar=planar)
+    if max_rmse_m is not None:
+        finder = replace(finder, max_rmse_m=max_rmse_m)
+    place_m = np.asarray(sensor_xyz_m, float)
+    return find_wall_segments(3, xyz_m, sensor_xyz_m=place_m, finder=finder)
 
 
 def values(found):

@@ -25,7 +25,7 @@ SETTINGS = {
     "plan": {
         "method": "wall_length",
         "extractor": "cluster_ransac",
-        "merge": {"max_angle_deg": 10.0, "merge_distance_m": 0.1, "min_scans": 2},
+        "merge": {"merge_distance_m": 0.1, "min_scans": 2},
         "export": {"assumed_thickness_m": 0.1, "assumed_height_m": 2.5},
     },
 }

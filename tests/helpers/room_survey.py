@@ -8,7 +8,6 @@ from scanplan.store import schemas, tables
 SETTINGS = {
     "cluster_ransac": {
         **toy_rooms.LIMITS,
-        "max_rmse_m": 0.025,
         "reach_deg": 3.5,
         "max_tilt_deg": 15.0,
         "bandwidth_m": 0.3,
@@ -16,7 +15,6 @@ SETTINGS = {
     },
     "iterative_ransac": {
         **toy_rooms.LIMITS,
-        "max_rmse_m": 0.025,
         "max_tilt_deg": 15.0,
         "trials": 100,
         "max_planes": 12,

@@ -62,7 +62,6 @@ SETTINGS = {
         "turn_rate_deg_s": 60.0,
         "sway_m": 0.0,
         "sway_deg": 0.0,
-        "sway_hz": 1.8,
         "sway_known": True,
     },
     "odometry": {
@@ -71,8 +70,6 @@ SETTINGS = {
         "random_m": 0.0,
         "random_deg": 0.0,
         "slips_per_m": 0.0,
-        "max_slip_m": 0.2,
-        "max_slip_deg": 5.0,
     },
     "localiser": {
         **SURE,
@@ -80,15 +77,12 @@ SETTINGS = {
         "kind": "amcl",
         "walk_m": 0.0,
         "walk_deg": 0.0,
-        "loop_late_m": 5.0,
         "start_off_m": 0.0,
         "start_off_deg": 0.0,
         "converge_m": 5.0,
         "drift_time_s": 20.0,
-        "max_jump_m": 0.3,
         "update_distance_m": 0.25,
         "update_angle_deg": 11.5,
-        "transform_tolerance_s": 0.1,
     },
     "people": {"count": 0, "speed_m_s": 1.0, "standing": 0, "followers": 0},
 }

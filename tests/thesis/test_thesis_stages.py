@@ -449,7 +449,7 @@ def further_experiments(survey, folder):
     )
     observations = survey / "observations.parquet"
     live = table["live_choice"]
-    choose_live(opened, observations, live, shares=[0.1, 0.5], max_cells=100)
+    choose_live(opened, observations, live, shares=[0.1, 0.5])
     factors = [1.0, 2.0]
     measure_sensitivity(
         opened, table["sensitivity"], extraction=extraction, hulls=hulls, factors=factors

@@ -12,7 +12,7 @@ from scanplan.registration.drift import odometry, submaps
 from scanplan.registration.icp import IcpResult
 from scanplan.registration.registration_settings import DriftSettings
 
-DRIFT = DriftSettings(drift_share=0.02, drift_deg_per_m=0.1, submap_m=4.0)
+DRIFT = DriftSettings()
 STRAIGHT = planar_poses([[0, 0], [1, 0], [2, 0], [3, 0]], np.zeros(4))
 IDS = np.array([10, 20, 30, 40])
 

@@ -10,7 +10,6 @@ from scanplan.store import schemas, tables
 
 SETTINGS = {
     **toy_rooms.LIMITS,
-    "max_rmse_m": 0.025,
     "reach_deg": 3.5,
     "max_tilt_deg": 15.0,
     "bandwidth_m": 0.3,

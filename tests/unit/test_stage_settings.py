@@ -108,8 +108,7 @@ def test_the_settings_classes_take_what_is_selected():
         selected = stage_settings.select_extractor(SETTINGS, name)
         own = {field.name: field.default is MISSING for field in fields(extractor.settings)}
         least = {name for name, is_asked in own.items() if is_asked}
-        more = {"max_rmse_m"} if extractor.drops_clutter else set()
-        assert least | more <= set(selected) <= own.keys() | more
+        assert least <= set(selected) <= own.keys()
     cells = stage_settings.select_wall_cells(SETTINGS, methods.WALL_LIMITS)
     wall_cells.WallCellSettings(**cells)
     planning.make_plan_settings(stage_settings.select_plan(SETTINGS))
@@ -162,12 +161,11 @@ def test_a_building_has_one_height_of_doors():
 
 def test_a_gap_a_corner_and_a_door_are_as_wide_for_scans_and_for_the_plan():
     settings = with_value("walls.max_gap_m", 0.7)
-    settings["advanced"]["walls"]["corner_m"] = 0.2
     settings["building"]["max_door_m"] = 1.2
     plan = stage_settings.select_plan(settings)
     walls = stage_settings.select_extractor(settings, "iterative_ransac")
     assert plan["merge"]["max_gap_m"] == plan["trace"]["max_gap_m"] == walls["max_gap_m"] == 0.7
-    assert plan["merge"]["corner_m"] == walls["corner_m"] == 0.2
+    assert plan["merge"]["corner_m"] == walls["corner_m"] == 0.25
     assert plan["openings"]["max_door_m"] == 1.2
 
 
@@ -195,7 +193,6 @@ def test_a_section_that_is_none_is_an_error():
 def test_a_section_comes_with_its_tuned_keys():
     registration = stage_settings.select_section(SETTINGS, "registration")
     assert registration["icp_method"] == "gicp" and registration["voxel_m"] == 0.25
-    assert registration["drift"]["drift_share"] == 0.02
     names = {field.name for field in fields(registration_settings(registration).limits)}
     assert "min_points" in names
 

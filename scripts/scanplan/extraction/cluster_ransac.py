@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import DIAGONAL, SegmentLimits, SegmentRow
+from scanplan.extraction.segment_limits import DIAGONAL, MAX_TILT_DEG, SegmentLimits, SegmentRow
 from scanplan.geometry import ransac
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.rays.ray_set import RaySet
@@ -35,8 +35,8 @@ class ClusterRansacSettings(SegmentLimits):
     """
 
     reach_deg: float
-    max_tilt_deg: float
-    bandwidth_m: float
+    max_tilt_deg: float = MAX_TILT_DEG
+    bandwidth_m: float = 0.3  # in the plane what a line leaves of a cluster gives another
     trials: int = 64  # half of a cluster being wall, all fail once in 1e8 times
 
 

@@ -22,6 +22,7 @@ from scanplan.types import FloatArray, Settings
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
+_MAX_RMSE_M = 0.025  # clutter that fills the band of `inlier_m`, 0.05 m, scatters by 0.029
 _Class = TypeVar("_Class", bound="DataclassInstance")
 
 
@@ -98,7 +99,7 @@ class WallFinder:
 def make_wall_finder(extractor: Extractor, settings: Settings, *, planar: bool) -> WallFinder:
     """Return an extractor with its own among more settings, as a plan uses it."""
     own = select_settings(extractor.settings, settings)
-    max_rmse_m = settings["max_rmse_m"] if extractor.drops_clutter else math.inf
+    max_rmse_m = _MAX_RMSE_M if extractor.drops_clutter else math.inf
     return WallFinder(extractor, own, planar, max_rmse_m)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import segments
-from scanplan.extraction.segment_limits import SegmentLimits, SegmentRow
+from scanplan.extraction.segment_limits import MAX_TILT_DEG, SegmentLimits, SegmentRow
 from scanplan.geometry import ransac
 from scanplan.geometry.consensus import MODELS
 from scanplan.rays.ray_set import RaySet
@@ -26,7 +26,7 @@ class IterativeRansacSettings(SegmentLimits):
         Largest number of rounds.
     """
 
-    max_tilt_deg: float
+    max_tilt_deg: float = MAX_TILT_DEG
     trials: int = 200  # a plane of a third of the points is missed once in 1,900 times
     max_planes: int = 20  # a room with its niches has fewer
 

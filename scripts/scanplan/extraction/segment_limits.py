@@ -27,6 +27,14 @@ class SegmentRow(NamedTuple):
     z_max_m: float
 
 
+MAX_TILT_DEG = 15.0
+"""Of a wall's normal against the horizontal: ASSUME noise of few points turns it by less."""
+LEAST_POINTS = 30
+"""ASSUME fewer points of a 3-D scan do not tell a wall from clutter."""
+LEAST_POINTS_PLANAR = 6
+"""The same of a 2-D scan, all of whose points at a wall lie on one line."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class ExtractorSettings:
     """What the settings of every extractor begin with.
@@ -44,8 +52,8 @@ class ExtractorSettings:
     """
 
     inlier_m: float
-    min_points: int
-    min_points_planar: int
+    min_points: int = LEAST_POINTS
+    min_points_planar: int = LEAST_POINTS_PLANAR
     seed: int
 
     def least_points(self, planar: bool) -> int:

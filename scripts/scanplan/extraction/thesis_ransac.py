@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import mean_shift, normals, segments
-from scanplan.extraction.segment_limits import ExtractorSettings, SegmentRow
+from scanplan.extraction.cluster_ransac import ClusterRansacSettings
+from scanplan.extraction.segment_limits import MAX_TILT_DEG, ExtractorSettings, SegmentRow
 from scanplan.geometry import consensus
 from scanplan.geometry.lines import Line
 from scanplan.rays.ray_set import RaySet
@@ -32,7 +33,7 @@ class ThesisIterativeSettings(ExtractorSettings):
         Of a model.
     """
 
-    max_tilt_deg: float
+    max_tilt_deg: float = MAX_TILT_DEG
     model: str
     max_trials: int = 50  # the default of the thesis's library
 
@@ -52,7 +53,7 @@ class ThesisClusterSettings(ThesisIterativeSettings):
     """
 
     reach_deg: float
-    bandwidth_m: float
+    bandwidth_m: float = ClusterRansacSettings.bandwidth_m
     projection: str
 
 

@@ -13,17 +13,6 @@ _OF_BOTH_EXTRACTORS = {
             "max_gap_m",
             "min_length_m",
             "min_height_m",
-            "min_points",
-            "min_points_planar",
-            "max_tilt_deg",
-        )
-    },
-    **{
-        key: f"advanced.walls.{key}"
-        for key in (
-            "max_rmse_m",
-            "furniture_depth_m",
-            "corner_m",
         )
     },
     "door_height_m": "building.door_height_m",
@@ -44,7 +33,6 @@ RENAMED = {
     "selection.seed": "seed",
     "selection.visibility.max_height_m": "building.door_height_m",
     "plan.merge.max_gap_m": "walls.max_gap_m",
-    "plan.merge.corner_m": "advanced.walls.corner_m",
     "plan.trace.max_gap_m": "walls.max_gap_m",
     "plan.trace.door_height_m": "building.door_height_m",
     "plan.pair.min_thickness_m": "building.min_thickness_m",
@@ -73,13 +61,16 @@ DROPPED = {
     "thesis": "the laboratory's workflow alone knows it: workflow/thesis/Snakefile",
     **dict.fromkeys(("plan.rooms.max_unseen", "advanced.plan.rooms.max_unseen"), _UNSEEN),
     "plan.right_angles": "faces are drawn as turned as their points are",
-    "plan.pair.max_angle_deg": "it is always 5 degrees",
 }
 """Key or section that is gone, and why."""
+_OF_ANY_EXTRACTOR = (
+    *("min_points", "min_points_planar", "max_tilt_deg", "max_rmse_m"),
+    *("furniture_depth_m", "corner_m"),
+)
 _FIXED = {
     "registration": (
         *("previous_apart_m", "previous_turn_deg", "min_facing_fitness", "icp_max_iterations"),
-        *("localiser_sigma_tilt_deg", "anchor_apart_m", "drift.submap_m"),
+        *("localiser_sigma_tilt_deg", "anchor_apart_m", "drift", "batch_size", "anchor_after"),
     ),
     "registration.graph": (
         *("loop_radius_m", "loop_apart", "loop_step_m", "loop_step_planar_m", "loops_per_scan"),
@@ -87,12 +78,28 @@ _FIXED = {
         "kernel_sigmas",
     ),
     "crispness": ("radius_m", "most_places"),
-    "selection": ("visibility.sector_deg", "visibility.min_height_m", "streaming.epsilon"),
+    "selection": (
+        *("visibility.sector_deg", "visibility.min_height_m", "streaming.epsilon"),
+        "playing.max_cells",
+    ),
     "walls": (
         *("cluster_ransac.trials", "iterative_ransac.trials", "iterative_ransac.max_planes"),
-        "thesis_ransac.max_trials",
+        *("thesis_ransac.max_trials", "cluster_ransac.bandwidth_m", *_OF_ANY_EXTRACTOR),
+        *(f"{extractor}.{key}" for extractor in _EXTRACTORS for key in _OF_ANY_EXTRACTOR),
     ),
+    "plan": ("trace", "ranges", "pair", "openings.max_closed_m", "rooms.min_walled", "trust"),
+    "plan.merge": (
+        *("max_angle_deg", "ghost_distance_m", "ghost_share", "align_gap_m", "min_length_m"),
+        *("registration_sigma_m", "min_points_per_m", "lone_length_m", "corner_m"),
+    ),
+    "plan.export": ("range_scale_sigma",),
     "plan.validation": ("max_rays", "span_m", "place_m"),
+    "simulate.errors": ("bias_m", "quantum_m", "grazing_from_deg"),
+    "simulate.drive": ("sway_hz",),
+    "simulate.odometry": ("max_slip_m", "max_slip_deg"),
+    "simulate.localiser": (
+        *("drift_time_s", "max_jump_m", "transform_tolerance_s", "loop_late_m"),
+    ),
 }
 DROPPED |= {
     f"{prefix}{section}.{key}": "no survey needed another value than its default"

@@ -19,20 +19,50 @@ if TYPE_CHECKING:
 Keywords = dict[str, Any]
 
 _PLAN_BELOW_DOOR_M = 0.1  # less: walls above doors close ways through; more: low openings are lost
-_PAIR_MAX_ANGLE_DEG = 5.0  # more pairs what merely lies side by side, less parts short walls' sides
-_OF_THE_PLAN = ("furniture_depth_m",)
-"""Of the keys below `walls`, what no extractor asks."""
-_THESIS_RANSAC = (
-    "inlier_m",
-    "min_points",
-    "min_points_planar",
-    "max_tilt_deg",
-    "seed",
-    "model",
-)
+SAME_FACE_DEG = 10.0
+"""What noise turns the normals of short segments of one face by, at most."""
+_CORNER_M = 0.25  # a door's reveal, and what an end may be wrong by
+_REGISTRATION_SIGMA_M = 0.02  # of a scan's place, where poses are not optimised together
+_MAX_SIGMA_M = 0.05  # of a wall's offset: beyond it, it is to be verified
+_PLAN: dict[str, Keywords] = {
+    "merge": {
+        "max_angle_deg": SAME_FACE_DEG,
+        "ghost_distance_m": 0.3,  # ASSUME a second image of a face lies nearer
+        "ghost_share": 0.2,  # of the stronger one's points a metre
+        "align_gap_m": 2.0,  # a double door, across which a wall goes on
+        "registration_sigma_m": _REGISTRATION_SIGMA_M,
+        "min_length_m": 0.3,  # a shorter face is a leg, a frame or a box
+        "min_points_per_m": 5.0,  # one in 20 cm: fewer are strays
+        "lone_length_m": 1.0,  # so long a face is none by chance, though few scans show it
+        "corner_m": _CORNER_M,
+    },
+    "trace": {
+        "band_m": 0.06,  # three times what registration may be wrong by
+        "reach_m": 2.0,  # the next door of a wall, and what follows it
+    },
+    "ranges": {
+        "sigma_m": 0.01,  # of beams' constant errors, as data sheets have it
+        "max_incidence_deg": 60.0,  # beyond, a beam's spot on the wall is twice as long as wide
+    },
+    "furniture": {"furniture_depth_m": 1.0},  # a gap no deeper is a niche, where rays end before
+    "pair": {
+        "max_angle_deg": 5.0,  # more pairs what lies side by side, less parts short walls' sides
+        "offset_m": 0.08,  # all faces of one side lie so near to one line
+    },
+    "openings": {
+        "max_closed_m": 2.0
+    },  # behind furniture; a longer pause that no ray tells is not known
+    "rooms": {"min_walled": 0.7},  # of the outline, where no sensor was in a room
+    "trust": {
+        "max_sigma_m": _MAX_SIGMA_M,
+        "min_observed": 0.5,
+    },  # half of it inferred is to be verified
+}
+"""What no survey needed another value of, by part of the plan."""
+_THESIS_RANSAC = ("inlier_m", "seed", "model")
 _THESIS = {
     "thesis_iterative_ransac": _THESIS_RANSAC,
-    "thesis_cluster_ransac": (*_THESIS_RANSAC, "reach_deg", "bandwidth_m", "projection"),
+    "thesis_cluster_ransac": (*_THESIS_RANSAC, "reach_deg", "projection"),
 }
 """What the thesis's extractors go by: no gap, furniture or height."""
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew", "max_damaged_share")
@@ -120,12 +150,9 @@ def select_order(settings: Settings, names: Iterable[str]) -> Keywords:
 def select_extractor(settings: Settings, extractor: str) -> Keywords:
     """Return the keywords of an extractor's settings: shared ones, the building's, its own."""
     walls, building = select_section(settings, "walls"), settings["building"]
-    shared = {
-        key: value
-        for key, value in walls.items()
-        if not isinstance(value, dict) and key not in _OF_THE_PLAN
-    }
+    shared = {key: value for key, value in walls.items() if not isinstance(value, dict)}
     known = shared | {"door_height_m": building["door_height_m"], "seed": settings["seed"]}
+    known |= {"corner_m": _CORNER_M}
     if extractor not in _THESIS:
         return known | walls.get(extractor, {})
     known |= walls["cluster_ransac"] | walls["thesis_ransac"]
@@ -140,22 +167,20 @@ def select_extractors(settings: Settings, extractors: Iterable[str]) -> dict[str
 def select_plan(settings: Settings) -> Keywords:
     """Return what `planning.make_plan_settings` takes: keywords by part."""
     plan, building = select_section(settings, "plan"), settings["building"]
-    walls = select_section(settings, "walls")
-    most_gap = {"max_gap_m": walls["max_gap_m"]}
+    gap = {"max_gap_m": settings["walls"]["max_gap_m"]}
     low = {"door_height_m": round(building["door_height_m"] - _PLAN_BELOW_DOOR_M, 6)}
     thickness = {key: building[key] for key in ("min_thickness_m", "max_thickness_m")}
-    furniture = {key: walls[key] for key in _OF_THE_PLAN}
-    furniture |= {"furniture_height_m": building["furniture_height_m"]}
-    return {
-        "merge": plan["merge"] | most_gap | {"corner_m": walls["corner_m"]},
-        "trace": plan["trace"] | most_gap | low,
-        "ranges": plan["ranges"],
-        "furniture": furniture,
-        "pair": plan["pair"] | thickness | {"max_angle_deg": _PAIR_MAX_ANGLE_DEG},
+    own = {
+        "merge": plan["merge"] | gap,
+        "trace": gap | low,
+        "ranges": {},
+        "furniture": {"furniture_height_m": building["furniture_height_m"]},
+        "pair": thickness,
         "openings": plan["openings"] | {"max_door_m": building["max_door_m"]},
         "rooms": plan["rooms"],
-        "trust": plan["trust"] | {"min_scans": plan["merge"]["min_scans"]},
+        "trust": {"min_scans": plan["merge"]["min_scans"]},
     }
+    return {part: keywords | own[part] for part, keywords in _PLAN.items()}
 
 
 def select_drawing(settings: Settings) -> Keywords:
@@ -204,8 +229,7 @@ def select_merging(settings: Settings) -> Keywords:
 def select_validation(settings: Settings) -> Keywords:
     """Return the keywords of `prediction.ValidationSettings`."""
     plan = select_section(settings, "plan")
-    sigma = {"registration_sigma_m": plan["merge"]["registration_sigma_m"]}
-    sigma |= {"max_sigma_m": plan["trust"]["max_sigma_m"]}
+    sigma = {"registration_sigma_m": _REGISTRATION_SIGMA_M, "max_sigma_m": _MAX_SIGMA_M}
     return plan["validation"] | sigma | {"seed": settings["seed"]}
 
 

@@ -91,7 +91,7 @@ class SequentialSettings:
     localiser_sigma_m: float
     localiser_sigma_deg: float
     localiser_sigma_tilt_deg: float = 0.3  # floor or gravity give roll and pitch
-    anchor_after: int
+    anchor_after: int = 5  # ASSUME who blocks the view is gone after 2.5 m of way
     anchor_apart_m: float = 5.0  # a room: no scan before shows what this one does
     min_points: int
 
@@ -159,8 +159,8 @@ class DriftSettings:
         Metres. The scans of so much way are recognised together.
     """
 
-    drift_share: float
-    drift_deg_per_m: float
+    drift_share: float = 0.02  # ASSUME twice what the scale of simulated wheels is off by
+    drift_deg_per_m: float = 0.1  # ASSUME 10 degrees after 100 m
     submap_m: float = 4.0  # a room, or a corridor with its doors, is unlike others
 
 
@@ -170,21 +170,21 @@ class RegistrationSettings:
 
     Attributes
     ----------
-    batch_size : int
-        So many candidates are registered one after the other on one core.
     limits : SequentialSettings
     graph : PoseGraphSettings
-    drift : DriftSettings
     part : int, optional
         Of a drive in parts that nothing ties the number of the one to take, 1 the first; by default
         the largest.
+    drift : DriftSettings
+    batch_size : int
+        So many candidates are registered one after the other on one core.
     """
 
-    batch_size: int
     limits: SequentialSettings
     graph: PoseGraphSettings
-    drift: DriftSettings
     part: int | None = None
+    drift: DriftSettings = DriftSettings()
+    batch_size: int = 100  # at most 50 m of way, so that two cores share a short drive
 
     def of_stations(self) -> "RegistrationSettings":
         """Return them for surveyed poses: exact to millimetres, and kept though others show none.
@@ -203,12 +203,11 @@ class RegistrationSettings:
 
 def registration_settings(section: Settings) -> RegistrationSettings:
     """Return the `RegistrationSettings` of a section `registration`."""
-    apart = ("batch_size", "graph", "drift", "part")
+    apart = ("graph", "part", "batch_size")
     limits = {key: value for key, value in section.items() if key not in apart}
     return RegistrationSettings(
-        batch_size=section["batch_size"],
         limits=SequentialSettings(**limits),
         graph=PoseGraphSettings(**section["graph"]),
-        drift=DriftSettings(**section["drift"]),
         part=section["part"],
+        batch_size=section.get("batch_size", RegistrationSettings.batch_size),
     )

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from scanplan.exports.sheet.symbols import list_blocks
 from scanplan.plan import floorplan
+from scanplan.project.stage_settings import SAME_FACE_DEG
 from scanplan.report import (
     chart,
     page_tables,
@@ -171,7 +172,7 @@ def _plan_svg(
         plan.faces,
         segments,
         rank,
-        max_angle_deg=merging["max_angle_deg"],
+        max_angle_deg=SAME_FACE_DEG,
         distance_m=merging["merge_distance_m"],
         min_scans=merging["min_scans"],
     )

@@ -123,12 +123,9 @@ AREA_METHOD = "cluster_hull"
 
 WALL_LIMITS = (
     "reach_deg",
-    "max_tilt_deg",
     "max_gap_m",
     "min_height_m",
     "wall_height_m",
     "door_height_m",
-    "min_points",
-    "min_points_planar",
 )
 """Settings of the wall extractor that decide what it could find; `wall_cells` takes them too."""

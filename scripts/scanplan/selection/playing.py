@@ -11,6 +11,8 @@ import numpy as np
 from scanplan.selection.wall_cells import KEYS
 from scanplan.types import Columns
 
+_MOST_CELLS = 200_000  # a floor of 1,500 m2 has 8,000
+
 Cell = tuple[int, int, int]
 
 
@@ -39,7 +41,7 @@ class PlayingSelection:
         If a parameter is out of its range.
     """
 
-    def __init__(self, *, min_new_share: float, max_cells: int) -> None:
+    def __init__(self, *, min_new_share: float, max_cells: int = _MOST_CELLS) -> None:
         if not 0 < min_new_share <= 1 or max_cells < 1:
             raise ValueError(
                 f"min_new_share is {min_new_share}, must be above 0 and at most 1; max_cells is"

@@ -18,6 +18,7 @@ from typing import Protocol
 import numpy as np
 
 from scanplan.extraction import upright_surfaces
+from scanplan.extraction.segment_limits import LEAST_POINTS, LEAST_POINTS_PLANAR, MAX_TILT_DEG
 from scanplan.extraction.upright_surfaces import UprightSurfaces
 from scanplan.geometry.tolerances import ROUNDING, SHORTEST_M
 from scanplan.rays import levels, sensor_frame
@@ -65,13 +66,13 @@ class WallCellSettings:
 
     cell_m: float
     reach_deg: float
-    max_tilt_deg: float
+    max_tilt_deg: float = MAX_TILT_DEG
     max_gap_m: float
     min_height_m: float
     wall_height_m: float
     door_height_m: float
-    min_points: int
-    min_points_planar: int
+    min_points: int = LEAST_POINTS
+    min_points_planar: int = LEAST_POINTS_PLANAR
 
 
 def observe_wall_cells(

@@ -22,8 +22,6 @@ def measure_live_choice(
     observed: Columns,
     orders: Mapping[str, IntArray],
     shares: Sequence[float],
-    *,
-    max_cells: int,
 ) -> Iterator[Measurement]:
     """Measure what is taken in one pass, and what as many of the first scans of orders find.
 
@@ -33,8 +31,6 @@ def measure_live_choice(
         The columns of `schemas.OBSERVATIONS`.
     orders : dict of str to (n,) int
         Rows by method.
-    max_cells : int
-        See `playing.PlayingSelection`.
 
     Yields
     ------
@@ -45,7 +41,7 @@ def measure_live_choice(
     begins = np.searchsorted(observed["scan_id"], ids)
     ends = np.searchsorted(observed["scan_id"], ids, side="right")
     for share in shares:
-        playing = PlayingSelection(min_new_share=share, max_cells=max_cells)
+        playing = PlayingSelection(min_new_share=share)
         taken = [
             row
             for row, (begin, end) in enumerate(zip(begins, ends, strict=True))

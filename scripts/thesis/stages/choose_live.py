@@ -15,7 +15,6 @@ def choose_live(
     output: FilePath,
     *,
     shares: Sequence[float],
-    max_cells: int,
 ) -> None:
     """Write what is taken, and what that and as many of the first scans of orders find.
 
@@ -23,14 +22,10 @@ def choose_live(
     ----------
     observations, output : path-like
         observations.parquet; thesis/live_choice.parquet, to write.
-    max_cells : int
-        See `playing.PlayingSelection`.
     """
     observed = tables.read_table(observations, schemas.OBSERVATIONS, allow_empty=True)
     findings = survey.match_walls()
-    rows = live_choice.measure_live_choice(
-        survey.truth, findings, observed, survey.orders, shares, max_cells=max_cells
-    )
+    rows = live_choice.measure_live_choice(survey.truth, findings, observed, survey.orders, shares)
     measurements.write_measurements(output, list(rows))
     log.log_line(f"choose_live: {len(shares)} thresholds")
 
@@ -42,5 +37,4 @@ if __name__ == "__main__":
             snakemake.input.observations,
             snakemake.output.chosen,
             shares=snakemake.params.shares,
-            max_cells=snakemake.params.playing["max_cells"],
         )

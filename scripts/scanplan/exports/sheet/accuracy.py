@@ -11,7 +11,8 @@ from scanplan.validation.verdict import judge_plan
 
 CLASSES_M = {"LOA50": 0.001, "LOA40": 0.005, "LOA30": 0.015, "LOA20": 0.05}
 """Levels of accuracy (USIBD LOA specification, after DIN 18710): greatest error of 95 %, metres."""
-
+CLOCKS_SIGMA = 0.0002
+"""Of the scale of ranges, as a share: clocks of sensors are off by a ten-thousandth."""
 
 _MOST_DOUBTED = 0.5  # of the walls' length: beyond it most errors are not those that are known
 

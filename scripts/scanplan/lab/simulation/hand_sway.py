@@ -12,6 +12,7 @@ from scanplan.types import FloatArray
 # with the foot's impact at twice the steps' rate
 _RATES = np.array([0.5, 1.0, 2.0])
 _SHARES = np.array([0.6, 0.75, 0.28])
+STEPS_HZ = 1.8  # of people (Pachi and Ji 2005)
 _RATE_SPREAD = 0.1  # ASSUME hands are no clockwork: each motion has a rate of its own, so far off
 _EXACT = 1e-5  # metres and radians that poses in between may be off: a tenth of a mm at 10 m
 _MILLISECOND_NS = 1_000_000
@@ -37,7 +38,7 @@ class Sway:
 
 
 def draw_sway(
-    pivot_m: FloatArray, *, sway_m: float, sway_deg: float, sway_hz: float, seed: int
+    pivot_m: FloatArray, *, sway_m: float, sway_deg: float, sway_hz: float = STEPS_HZ, seed: int
 ) -> Sway:
     """Return the sway of one walk.
 

@@ -50,7 +50,7 @@ class Belief:
     ahead_ns: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LocaliserErrors:
     """What a localiser that knows the map errs by.
 
@@ -72,12 +72,12 @@ class LocaliserErrors:
     noise_deg: float
     drift_m: float
     drift_deg: float
-    drift_time_s: float
+    drift_time_s: float = 10.0  # ASSUME so long a corridor pulls the same way
     jumps_per_min: float
-    max_jump_m: float
+    max_jump_m: float = 0.3  # ASSUME a jump from one of two like places to the other
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Localiser:
     """How a localiser speaks, and what it errs by.
 
@@ -95,7 +95,7 @@ class Localiser:
 
     update_distance_m: float
     update_angle_deg: float
-    transform_tolerance_s: float
+    transform_tolerance_s: float = 0.1  # as AMCL has it
     errors: LocaliserErrors
     start: Settings
     slam: Settings | None

@@ -33,8 +33,8 @@ class WheelErrors:
     random_m: float
     random_deg: float
     slips_per_m: float
-    max_slip_m: float
-    max_slip_deg: float
+    max_slip_m: float = 0.2  # ASSUME a door sill, on which wheels turn in vain
+    max_slip_deg: float = 5.0  # the same of a turn, to either side
 
 
 def integrate_odometry(

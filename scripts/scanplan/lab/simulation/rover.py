@@ -38,7 +38,7 @@ def carry_in_hand(
     *,
     sway_m: float,
     sway_deg: float,
-    sway_hz: float,
+    sway_hz: float = hand_sway.STEPS_HZ,
     seed: int,
 ) -> Drive:
     """Return a drive as a walking hand makes it, which sways about the sensor.

@@ -62,7 +62,7 @@ class SensorErrors:
     stray_share: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class StatedErrors:
     """The errors of a kind of sensor, as the section `simulate.errors` of the settings states them.
 
@@ -80,9 +80,9 @@ class StatedErrors:
     """
 
     noise_m: float
-    bias_m: float
-    quantum_m: float
-    grazing_from_deg: float
+    bias_m: float = 0.005  # ASSUME millimetres, as calibrations of such sensors find
+    quantum_m: float = 0.002  # of a Velodyne
+    grazing_from_deg: float = 80.0  # ASSUME returns fade over the last 10 degrees
     glass_pass: float
     glass_drop: float
     glass_return_deg: float

@@ -11,6 +11,7 @@ from scanplan.types import FloatArray
 # than after 10 m of way, as what was just passed is matched all the time
 _LOOP_M = 1.0
 _LOOP_WAY_M = 10.0
+_LATE_M = 5.0  # ASSUME a loop is closed some seconds after it was driven
 
 
 def track_poses(
@@ -18,7 +19,7 @@ def track_poses(
     *,
     walk_m: float,
     walk_deg: float,
-    loop_late_m: float,
+    loop_late_m: float = _LATE_M,
     seed: int,
 ) -> FloatArray:
     """Return map_from_base (m, 4, 4) as SLAM states them at the time.

@@ -26,8 +26,8 @@ from scanplan.lab.simulation.survey_truth import mark_visible
 from scanplan.types import FloatArray, IntArray, Settings
 
 _START = ("start_off_m", "start_off_deg", "converge_m")
-_SLAM = ("walk_m", "walk_deg", "loop_late_m")
-_SPEAKING = ("update_distance_m", "update_angle_deg", "transform_tolerance_s")
+_SLAM = ("walk_m", "walk_deg")
+_SPEAKING = ("update_distance_m", "update_angle_deg")
 _ROUTE = ("route", "waypoints_m", "start_m", "clearance_m")
 _TURNING = ("rate_hz", "sweep", "min_range_m", "max_range_m")
 _CLUTTER = ("chairs", "doors_ajar")
@@ -138,7 +138,7 @@ def plan_motion(
     Whether the recorded poses state the sway, `sway_known`, is another's: the motion is the same.
     """
     speed = {key: drive[key] for key in ("speed_m_s", "turn_rate_deg_s")}
-    hand = {key: drive[key] for key in ("sway_m", "sway_deg", "sway_hz")}
+    hand = {key: drive[key] for key in ("sway_m", "sway_deg")}
     planned = rover.plan_drive(waypoints_m, **speed)
     return rover.carry_in_hand(planned, base_from_sensor, **hand, seed=seed)
 
