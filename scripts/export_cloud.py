@@ -14,7 +14,7 @@ from scanplan.exports.model_origin import find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import GeoReference
 from scanplan.plan.survey_scale import find_factor
-from scanplan.recordings.survey import open_colours
+from scanplan.recordings.survey import Reading, open_colours
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, tables
@@ -61,7 +61,7 @@ def export_cloud(
     picture = _begin_picture(free)
     with (
         atomic.replace_file(outputs["cloud"]) as temporary,
-        open_colours(inputs["recordings"], **(reading or {})) as read_colours,
+        open_colours(inputs["recordings"], Reading(**(reading or {}))) as read_colours,
     ):
         clouds = log.report_progress(store.scans(wanted), "export_cloud", total=len(wanted))
         n_points, n_kept = point_cloud.write_laz(

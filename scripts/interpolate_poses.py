@@ -17,7 +17,7 @@ from scanplan.recordings.motion import (
     trajectory,
     turn_smear,
 )
-from scanplan.recordings.survey import is_as_recorded, open_survey
+from scanplan.recordings.survey import Reading, is_as_recorded, open_survey
 from scanplan.recordings.survey_protocol import Survey
 from scanplan.stage import log, witnesses
 from scanplan.store import doubts, schemas, tables
@@ -63,7 +63,7 @@ def interpolate_poses(
         If the recordings cannot be used or no candidate has a pose.
     """
     limits = {"max_gap_s": max_gap_s, "max_speed_m_s": max_speed_m_s}
-    with open_survey(files, max_damaged_share=1.0, **reading) as survey:
+    with open_survey(files, Reading(**reading, max_damaged_share=1.0)) as survey:
         t_ns = survey.stamps()
         # what of it is lost, and not which of the clouds that are read here are damaged
         found = doubts.Doubts().add(survey.describe_damage(), rayless=survey.describe_rays())

@@ -14,7 +14,7 @@ from scanplan.recordings import candidates, frame_edges
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.motion.pose_kind import ESTIMATED
 from scanplan.recordings.recorded_survey import BagSurvey
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.selection import wall_cells
 from scanplan.selection.playing import PlayingSelection
 from scanplan.selection.wall_cells import WallCellSettings
@@ -56,7 +56,7 @@ def write_reduced_bag(
     limits = {name: poses[name] for name in ("max_gap_s", "max_speed_m_s")}
     spacing = {name: value for name, value in poses.items() if name not in limits}
     selection = PlayingSelection(**playing)
-    with open_survey(recordings, **{**reading, "deskew": False}) as survey:
+    with open_survey(recordings, Reading(**{**reading, "deskew": False})) as survey:
         if not isinstance(survey, BagSurvey):
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"

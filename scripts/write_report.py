@@ -105,7 +105,7 @@ def _draw_pictures(plan: floorplan.FloorPlan, survey: SurveyFacts, path: FilePat
         points=point_image.draw_point_image(store.scans(chosen_ids), plan),
         in_space=solid_view.pack_view(plan, store.scans(chosen_ids)),
         sights=sights.find_sights(plan, in_order, registered, planar=store.planar),
-        way_m=sights.trace_way(registered),
+        way_m=sights.simplify_track(registered),
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.exports import selected_bag
 from scanplan.recordings.recorded_survey import BagSurvey
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.selection import stopping
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans
@@ -54,7 +54,7 @@ def write_selected_bag(
     registered = registered_scans.read_registered_scans(registration)
     rows = registered_scans.rows_of_scans(scan_ids, registered, selection, registration)
     poses = registered.map_from_sensor[rows]
-    with open_survey(recordings, **{**reading, "deskew": False}) as survey:
+    with open_survey(recordings, Reading(**{**reading, "deskew": False})) as survey:
         if not isinstance(survey, BagSurvey):
             raise StageError(
                 f"{output}: not written, as {Path(recordings[0]).parent} holds clouds in files and"

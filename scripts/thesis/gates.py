@@ -173,9 +173,9 @@ def _align_pair(
         source.cloud,
         target.cloud,
         true_step,
-        method=method,
-        distances_m=[distance_m],
-        max_iterations=preset.icp_max_iterations,
+        icp.IcpSettings(
+            method=method, distances_m=[distance_m], max_iterations=preset.icp_max_iterations
+        ),
     )
     if not fit.sound:
         return []

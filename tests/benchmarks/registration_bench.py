@@ -15,7 +15,7 @@ from reference import registration as literal
 from scanplan.lab.evaluation import pose_errors, truth_file
 from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import pose_columns, schemas, tables
 from scanplan.types import Columns, Settings
 
@@ -104,7 +104,7 @@ def _literal(folder: Path, bag: Path, settings: Settings) -> Callable[[], object
     motion = trajectory.motion_from_columns(
         tables.read_table(folder / "motion.parquet", schemas.MOTION)
     )
-    with open_survey([str(bag)], **settings["input"], motion=motion) as survey:
+    with open_survey([str(bag)], Reading(**settings["input"]), motion=motion) as survey:
         scans = [scan.xyz_m for scan in survey.scans(candidates["scan_id"][some].tolist())]
     names = ("min_prior_fitness", "min_refined_fitness")
     limits = {name: settings["registration"][name] for name in names}

@@ -44,8 +44,8 @@ _MEASURES = (
 _READ = """
 import resource, sys
 from pathlib import Path
-from scanplan.recordings.survey import open_survey
-with open_survey([sys.argv[1]]) as survey:
+from scanplan.recordings.survey import Reading, open_survey
+with open_survey([sys.argv[1]], Reading()) as survey:
     n_points = sum(len(scan.xyz_m) for scan in survey.scans(range(int(sys.argv[2]))))
 took = resource.getrusage(resource.RUSAGE_SELF)
 peak_kb = Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0]

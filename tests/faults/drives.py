@@ -16,7 +16,7 @@ from helpers.default_settings import SETTINGS
 from scanplan.geometry import se3
 from scanplan.project import stage_settings
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from simulate_survey import simulate_survey
 
 _OUTER = [(0, 0), (10.4, 0), (10.4, 7.1), (0, 7.1), (0, 0)]
@@ -128,7 +128,9 @@ def drive_through(folder, storey="rooms", mirror=None, settings=None):
     given = {"sensor": {"n_azimuth": 360, "sweep": False, "rate_hz": 4.0}, **(settings or {})}
     known |= {key: {**known[key], **value} for key, value in given.items() if key in known}
     simulate_survey(drawing, *outputs, **known)
-    with open_survey([str(outputs[0])], **stage_settings.select_section(SETTINGS, "input")) as read:
+    with open_survey(
+        [str(outputs[0])], Reading(**stage_settings.select_section(SETTINGS, "input"))
+    ) as read:
         t_ns = read.stamps()
         chains = [read.pose_edges(), read.motion_chains()[0][1]]
         found = [frame_edges.chain_poses(chain, t_ns, max_gap_s=2.0) for chain in chains]

@@ -17,7 +17,7 @@ from helpers import cloud_files, e57_making, las_making, ptx_making
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 GROUP, HOSTILE = "damaged files", "hostile files"
 _STEP_M = 0.04
@@ -75,7 +75,7 @@ def _change_and_read(place, victim, sound, change):
 def _read(place):
     """Read all that the first two stages read."""
     files = dataset_files.find_files(place)
-    with open_survey(files, min_range_m=0.1, max_range_m=100.0) as survey:
+    with open_survey(files, Reading(min_range_m=0.1, max_range_m=100.0)) as survey:
         edges, stamps = survey.pose_edges(), survey.stamps()
         survey.motion_chains()
         frame_edges.chain_poses(edges, stamps, max_gap_s=2.0)

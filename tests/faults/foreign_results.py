@@ -18,7 +18,7 @@ from scanplan.errors import StageError
 from scanplan.project import dataset_files, provenance
 from scanplan.project.run import run_places
 from scanplan.recordings import messages
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import schemas, tables
 
 HERE, THERE = "a" * 64, "b" * 64
@@ -139,7 +139,7 @@ def _read_cloud(folder, changes, body):
     path.write_bytes(text.encode("latin") + body)
     (folder / "poses.tum").write_text("1700000000.0 0 0 0 0 0 0 1\n1700000001.0 0 0 0 0 0 0 1\n")
     files = [str(folder / "poses.tum"), str(path)]
-    with open_survey(files, min_range_m=0.1, max_range_m=100.0) as survey:
+    with open_survey(files, Reading(min_range_m=0.1, max_range_m=100.0)) as survey:
         return [scan.xyz_m for scan in survey.scans([0])]
 
 

@@ -11,7 +11,7 @@ from faults import damaged_bags
 from faults.judging import Case
 from helpers import bag_making
 from scanplan.recordings import bags
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 _TOPICS = ("/points", "/amcl_pose")
 
@@ -80,7 +80,7 @@ def list_survey_cases(folder):
 
 def read_survey(path, **reading):
     """Read all that the first two stages read."""
-    with open_survey([str(path)], min_range_m=0.1, max_range_m=100.0, **reading) as survey:
+    with open_survey([str(path)], Reading(min_range_m=0.1, max_range_m=100.0, **reading)) as survey:
         edges = survey.pose_edges()
         survey.motion_chains()
         stamps = survey.stamps()
@@ -251,7 +251,7 @@ def _damage_scan_folder(place, victim, sound, seed):
     victim.write_bytes(content)
     try:
         files = [str(f) for f in sorted(place.rglob("*")) if f.is_file()]
-        with open_survey(files, min_range_m=0.1, max_range_m=100.0) as survey:
+        with open_survey(files, Reading(min_range_m=0.1, max_range_m=100.0)) as survey:
             stamps = survey.stamps()
             return survey.pose_edges(), stamps, list(survey.scans(range(len(stamps))))
     finally:

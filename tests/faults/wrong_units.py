@@ -17,7 +17,7 @@ from scanplan.geometry import se3
 from scanplan.plan.floorplan import centrelines_m, line_shapes
 from scanplan.project import stage_settings
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import schemas, tables
 from simulate_survey import simulate_survey
 
@@ -128,7 +128,9 @@ def _drive_through(folder, floor):
     settings = stage_settings.select_simulation(SETTINGS)
     sensor = settings["sensor"] | {"n_azimuth": 360, "sweep": False, "rate_hz": 5.0}
     simulate_survey(building, *outputs, **(settings | {"sensor": sensor}))
-    with open_survey([str(outputs[0])], **stage_settings.select_section(SETTINGS, "input")) as read:
+    with open_survey(
+        [str(outputs[0])], Reading(**stage_settings.select_section(SETTINGS, "input"))
+    ) as read:
         t_ns = read.stamps()
         poses, _, covered = frame_edges.chain_poses(read.pose_edges(), t_ns, max_gap_s=2.0)
         rows = np.flatnonzero(covered)

@@ -13,7 +13,7 @@ from scanplan.geometry import se3
 from scanplan.lab.buildings import drawing_file, extrusion
 from scanplan.project import stage_settings
 from scanplan.recordings.motion import trajectory
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import schemas, tables, tum
 from simulate_survey import simulate_survey
 
@@ -63,7 +63,7 @@ def off_the_walls_m(folder, building, way, **reading):
     """Distance of every point to the building, the scans placed by their true poses."""
     _, rows = tum.read_tum(folder / "truth_poses.tum")
     poses = se3.pose_matrix(rows[:, :3], rows[:, 3:])
-    with open_survey([str(folder / "survey.bag")], motion=way, **reading) as survey:
+    with open_survey([str(folder / "survey.bag")], Reading(**reading), motion=way) as survey:
         scans = list(survey.scans(range(1, len(poses) - 1)))
     placed = np.concatenate([se3.transform_points(poses[s.scan_id], s.xyz_m) for s in scans])
     mesh = extrusion.make_building_mesh(drawing_file.parse_drawing(building.read_bytes(), building))

@@ -9,7 +9,7 @@ from measure_crispness import measure_crispness
 from register_scans import register_scans
 from scanplan.geometry import se3
 from scanplan.project import dataset_files, stage_settings
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import pose_columns, schemas, tables
 
 SETTINGS = {"most_points": 100_000, "seed": 1}
@@ -112,7 +112,7 @@ def test_registration_makes_disturbed_recordings_crisper(
     candidates = tables.read_table(given, schemas.POSES)
     candidates = {name: values[:MOST_SCANS] for name, values in candidates.items()}
     tables.write_table(given, schemas.POSES, candidates)
-    with open_survey(files, **reading) as survey:
+    with open_survey(files, Reading(**reading)) as survey:
         is_planar = survey.planar
     outputs = [tmp_path / f for f in ("scans.parquet", "registration.parquet", "edges.parquet")]
     ratios = []

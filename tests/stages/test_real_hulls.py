@@ -6,7 +6,7 @@ import pytest
 from reference import hull_selection
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.registration import results
 from scanplan.selection import area_greedy, bounds, hulls, streaming
 
@@ -19,7 +19,7 @@ N_SCANS = 40
 def polygons(recordings_dir, request):
     """Polygons of scans from all over a recording, placed by the localiser."""
     with open_survey(
-        dataset_files.find_files(str(recordings_dir / request.param)), min_range_m=0.1
+        dataset_files.find_files(str(recordings_dir / request.param)), Reading(min_range_m=0.1)
     ) as survey:
         pose, _, covered = frame_edges.chain_poses(
             survey.pose_edges(), survey.stamps(), max_gap_s=2.0

@@ -18,7 +18,7 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.lab.buildings import drawing_file, extrusion
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from simulate_survey import simulate_survey
 
 STORE = get_typestore(Stores.ROS1_NOETIC)
@@ -325,7 +325,7 @@ def test_stages_read_the_survey_whatever_it_is_written_as(tmp_path, building, na
     bag, _, poses, _ = run(tmp_path, building, name=name, sensor={"n_azimuth": 30})
     for pose_topic in (None, "/tf"):
         with open_survey(
-            [str(bag)], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0
+            [str(bag)], Reading(pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0)
         ) as opened:
             assert not opened.planar
             t_ns, xyz_m, _ = track(poses)
@@ -346,7 +346,7 @@ def test_a_laser_scanners_survey_is_planar_and_on_the_walls(
 ):
     sensor = {"model": "laser", "n_azimuth": n_beams, "field_deg": field_deg}
     bag, _, _, trajectory = run(tmp_path, building, sensor=sensor)
-    with open_survey([str(bag)], min_range_m=0.1, max_range_m=100.0) as opened:
+    with open_survey([str(bag)], Reading(min_range_m=0.1, max_range_m=100.0)) as opened:
         assert opened.planar
         scans = list(opened.scans(range(len(opened.stamps()))))
     seen, way = [], track(trajectory)
@@ -459,7 +459,9 @@ def test_points_of_a_hand_that_sways_lie_on_the_building_whatever_the_sensor(
 
 def sensor_in_the_map(bag, t_ns, pose_topic):
     """Where the recorded poses say that the sensor was at some moments."""
-    with open_survey([bag], pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0) as opened:
+    with open_survey(
+        [bag], Reading(pose_topic=pose_topic, min_range_m=0.1, max_range_m=100.0)
+    ) as opened:
         placed, _, covered = frame_edges.chain_poses(opened.pose_edges(), t_ns, max_gap_s=5.0)
     assert covered.all()
     return placed
@@ -533,5 +535,5 @@ def test_with_everything_on_the_seed_alone_makes_the_bytes(tmp_path, project_roo
         for name, threads in (("a", 1), ("b", 2))
     )
     assert [p.read_bytes() for p in first] == [p.read_bytes() for p in again]
-    with open_survey([str(first[0])], min_range_m=0.1, max_range_m=100.0) as opened:
+    with open_survey([str(first[0])], Reading(min_range_m=0.1, max_range_m=100.0)) as opened:
         assert not opened.planar and len(next(iter(opened.scans([5]))).xyz_m) > 500

@@ -10,7 +10,7 @@ from scanplan.errors import StageError
 from scanplan.exports import selected_bag
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 START = bag_making.START_NS
 UPTIME = 734 * 10**9
@@ -51,7 +51,7 @@ def record(folder, *, topic="/amcl_pose", timed=True, is_received=True):
 
 @pytest.mark.parametrize("topic", ["/amcl_pose", "/tf"])
 def test_clouds_are_placed_where_their_sweep_began(tmp_path, topic, caplog):
-    with caplog.at_level("INFO"), open_survey(record(tmp_path, topic=topic)) as survey:
+    with caplog.at_level("INFO"), open_survey(record(tmp_path, topic=topic), Reading()) as survey:
         assert survey.stamps().tolist() == SEEN.tolist()
         pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), SEEN, max_gap_s=1.0)
         scans = list(survey.scans([0, 9]))
@@ -63,18 +63,18 @@ def test_clouds_are_placed_where_their_sweep_began(tmp_path, topic, caplog):
 
 
 def test_without_times_of_points_a_sweep_counts_as_seen_when_it_was_over(tmp_path):
-    with open_survey(record(tmp_path, timed=False)) as survey:
+    with open_survey(record(tmp_path, timed=False), Reading()) as survey:
         assert survey.stamps().tolist() == (SEEN + 99 * MS).tolist()
 
 
 def test_scans_that_are_chosen_are_read_again_alike(tmp_path):
     chosen = np.array([2, 5, 8])
-    with open_survey(record(tmp_path / "all")) as survey:
+    with open_survey(record(tmp_path / "all"), Reading()) as survey:
         poses, _, _ = frame_edges.chain_poses(survey.pose_edges(), SEEN[chosen], max_gap_s=1.0)
         (tmp_path / "some").mkdir()
         selected_bag.copy_selected_scans(tmp_path / "some/run.bag", survey, chosen, poses)
     again = dataset_files.find_files(tmp_path / "some")
-    with open_survey(again, pose_topic=selected_bag.POSE_TOPIC) as survey:
+    with open_survey(again, Reading(pose_topic=selected_bag.POSE_TOPIC)) as survey:
         assert survey.stamps().tolist() == SEEN[chosen].tolist()
 
 

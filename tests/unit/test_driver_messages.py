@@ -6,7 +6,7 @@ import pytest
 from helpers import bag_making
 from scanplan.errors import StageError
 from scanplan.project import dataset_files
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 T_NS = bag_making.START_NS
@@ -21,7 +21,7 @@ def read(folder, kind, make):
     entries = [("/clouds", T_NS + i * 10**8, make(maker, T_NS + i * 10**8)) for i in range(3)]
     entries += [("/amcl_pose", T_NS + i, maker.amcl(T_NS + i, (0, 0, 0))) for i in (0, 10**9)]
     maker.write(folder / "run", entries)
-    with open_survey(dataset_files.find_files(folder), **LIMITS) as survey:
+    with open_survey(dataset_files.find_files(folder), Reading(**LIMITS)) as survey:
         (scan,) = survey.scans([0])
         return scan, survey.planar
 
@@ -66,9 +66,9 @@ def test_a_common_cloud_goes_before_a_drivers_own(tmp_path):
     ]
     maker.write(tmp_path / "run", entries)
     files = dataset_files.find_files(tmp_path)
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         assert len(next(iter(survey.scans([0]))).xyz_m) == len(POINTS)
-    with open_survey(files, cloud_topic="/livox/lidar", **LIMITS) as survey:
+    with open_survey(files, Reading(cloud_topic="/livox/lidar", **LIMITS)) as survey:
         assert len(next(iter(survey.scans([0]))).xyz_m) == 5
 
 

@@ -10,7 +10,7 @@ from helpers import refusals
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, grid_map_scans
 from scanplan.recordings.motion import pose_kind
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 FREE, OCCUPIED, UNKNOWN = 254, 0, 205
@@ -42,7 +42,7 @@ def write(folder, cells=None, text=YAML, name="room.pgm"):
 
 def read(folder):
     """Return where scans were taken (n, 2), and what they see, in the map."""
-    with open_survey(dataset_files.find_files(folder), **LIMITS) as survey:
+    with open_survey(dataset_files.find_files(folder), Reading(**LIMITS)) as survey:
         t_ns = survey.stamps()
         assert survey.planar and survey.pose_kind == pose_kind.STATIONS
         assert ["0.05 m" in told for told in survey.describe_rays()] == [True]

@@ -44,7 +44,10 @@ def test_a_known_motion_is_found(planar, method):
     seen = se3.transform_points(se3.invert_pose(truth), box_points(8000, rng, planar=planar))
     source = cloud_of(seen, planar=planar, voxel_m=0.05)
     fit = icp.align_clouds(
-        source, target, np.eye(4), method=method, distances_m=[0.5], max_iterations=60
+        source,
+        target,
+        np.eye(4),
+        icp.IcpSettings(method=method, distances_m=[0.5], max_iterations=60),
     )
     error = se3.invert_pose(truth) @ fit.target_from_source
     assert np.linalg.norm(error[:3, 3]) < (
@@ -63,7 +66,9 @@ def test_a_corridor_leaves_the_way_along_it_to_the_start():
     walls = np.concatenate([np.column_stack([x, 0 * x + y, 0 * x]) for y in (0.0, 2.0)])
     cloud = cloud_of(walls, planar=True, voxel_m=0.05)
     start = motion([0.4, 0.1, 0], 1.0)
-    fit = icp.align_clouds(cloud, cloud, start, method="gicp", distances_m=[0.5], max_iterations=30)
+    fit = icp.align_clouds(
+        cloud, cloud, start, icp.IcpSettings(method="gicp", distances_m=[0.5], max_iterations=30)
+    )
     assert abs(fit.target_from_source[1, 3]) < 1e-3
     assert abs(se3.pose_yaw_rad(fit.target_from_source)) < 1e-3
     assert abs(fit.target_from_source[0, 3] - 0.4) < 0.02
@@ -82,10 +87,9 @@ def test_somebody_who_walks_along_a_corridor_does_not_hold_a_scan(sure_within_m,
     )
     fit = icp.align_clouds(
         *(cloud, cloud, motion([0.25, 0, 0], 0)),
-        method="gicp",
-        distances_m=[0.5, 0.15],
-        max_iterations=30,
-        sure_within_m=sure_within_m,
+        icp.IcpSettings(
+            method="gicp", distances_m=[0.5, 0.15], max_iterations=30, sure_within_m=sure_within_m
+        ),
     )
     assert abs(fit.target_from_source[0, 3] - x_m) < 0.02
     assert fit.n_unobservable == (1 if x_m else 0)
@@ -123,7 +127,10 @@ def test_far_apart_there_is_nothing_to_fit():
         box_points(500, np.random.default_rng(0), planar=True), planar=True, voxel_m=0.05
     )
     fit = icp.align_clouds(
-        cloud, cloud, motion([50, 0, 0], 0), method="gicp", distances_m=[0.5], max_iterations=10
+        cloud,
+        cloud,
+        motion([50, 0, 0], 0),
+        icp.IcpSettings(method="gicp", distances_m=[0.5], max_iterations=10),
     )
     assert not fit.sound and not fit.information.any()
     np.testing.assert_array_equal(fit.target_from_source, motion([50, 0, 0], 0))
@@ -133,7 +140,10 @@ def test_clutter_without_a_line_is_nothing_to_fit():
     points = np.column_stack([np.random.default_rng(5).uniform(0, 40, (60, 2)), np.zeros(60)])
     cloud = cloud_of(points, planar=True, voxel_m=0.1)
     assert not icp.align_clouds(
-        cloud, cloud, np.eye(4), method="gicp", distances_m=[0.5], max_iterations=10
+        cloud,
+        cloud,
+        np.eye(4),
+        icp.IcpSettings(method="gicp", distances_m=[0.5], max_iterations=10),
     ).sound
 
 
@@ -168,7 +178,10 @@ def test_what_a_corridor_does_not_tell_is_left_to_the_start(planar):
     )
     start = motion([0.3, 0.08, 0.0], 1.0)
     fit = icp.align_clouds(
-        source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30
+        source,
+        target,
+        start,
+        icp.IcpSettings(method="gicp", distances_m=[0.5, 0.15], max_iterations=30),
     )
     assert fit.n_unobservable == 1
     assert np.linalg.norm(fit.information[:3, 0]) < 1e-3 * fit.information[1, 1]
@@ -189,7 +202,10 @@ def test_the_information_is_that_of_the_errors():
         )
         start = motion([0.03, -0.02, 0.01], 0.5)
         fit = icp.align_clouds(
-            source, target, start, method="gicp", distances_m=[0.5, 0.15], max_iterations=30
+            source,
+            target,
+            start,
+            icp.IcpSettings(method="gicp", distances_m=[0.5, 0.15], max_iterations=30),
         )
         twist = twists.motion_to_twist(fit.target_from_source)
         squared.append(twist @ fit.information @ twist)
@@ -262,7 +278,10 @@ def test_the_two_sides_of_a_partition_are_not_drawn_together(planar):
     truth = motion([4.0, 0, 0], 0.0)
     distances_m = [0.5, 0.15] if planar else [0.15]
     fit = icp.align_clouds(
-        source, target, truth, method="gicp", distances_m=distances_m, max_iterations=30
+        source,
+        target,
+        truth,
+        icp.IcpSettings(method="gicp", distances_m=distances_m, max_iterations=30),
     )
     assert np.linalg.norm(fit.target_from_source[:3, 3] - truth[:3, 3]) < 0.015
 

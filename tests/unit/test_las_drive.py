@@ -7,7 +7,7 @@ from helpers import refusals
 from helpers.las_making import write_las, write_trajectory
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, las_drive, trajectory_file
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 RNG = np.random.default_rng(3)
@@ -26,7 +26,7 @@ def drive(folder, *, suffix=".laz", time_s=TIME_S, at_s=AT_S, rows=slice(None), 
 
 def read(folder):
     """Return the stamps of a drive, its poses, and the points of all its scans in the map."""
-    with open_survey(dataset_files.find_files(folder), **LIMITS) as survey:
+    with open_survey(dataset_files.find_files(folder), Reading(**LIMITS)) as survey:
         t_ns = survey.stamps()
         pose, _, covered = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=2)
         scans = list(survey.scans(range(len(t_ns))))

@@ -14,7 +14,7 @@ from scanplan.geometry import se3
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import lidar_odometry, pose_kind
 from scanplan.recordings.motion.trajectory import SensorMotion
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 STEP_NS = 100_000_000
 N_SCANS = 20
@@ -142,7 +142,7 @@ def test_who_is_carried_or_has_odometry_loses_no_scans():
 
 def test_2_d_scans_without_poses_are_told_what_to_record(tmp_path):
     with (
-        open_survey(record(tmp_path, planar=True)) as survey,
+        open_survey(record(tmp_path, planar=True), Reading()) as survey,
         refused(value=("/scan", "/pose"), key="slam_toolbox"),
     ):
         survey.pose_edges()
@@ -153,12 +153,12 @@ def test_without_the_package_the_line_says_how_to_get_it(tmp_path, monkeypatch):
     for name in ("kiss_icp", "kiss_icp.config", "kiss_icp.kiss_icp"):
         monkeypatch.setitem(sys.modules, name, None)
     files = record(tmp_path)
-    with open_survey(files) as survey:
+    with open_survey(files, Reading()) as survey:
         assert survey.pose_kind == pose_kind.ESTIMATED
         with refused(value="/points", remedy="make kiss-icp"):
             survey.pose_edges()
     with (
-        open_survey(files, pose_kind=pose_kind.ESTIMATED) as survey,
+        open_survey(files, Reading(pose_kind=pose_kind.ESTIMATED)) as survey,
         refused(key="pose_kind", remedy="make kiss-icp"),
     ):
         survey.pose_edges()
@@ -168,7 +168,7 @@ def test_without_the_package_the_line_says_how_to_get_it(tmp_path, monkeypatch):
 def test_kiss_icp_finds_the_way_of_the_rover(tmp_path, mount):
     pytest.importorskip("kiss_icp", reason="KISS-ICP is not installed (make kiss-icp)")
     files = record(tmp_path, mount=mount)
-    with open_survey(files) as survey:
+    with open_survey(files, Reading()) as survey:
         edges = survey.pose_edges()
         pose, _, covered = frame_edges.chain_poses(edges, survey.stamps(), max_gap_s=0.5)
     assert covered.all()
@@ -181,7 +181,7 @@ def test_kiss_icp_finds_the_way_of_the_rover(tmp_path, mount):
     yaw_deg = np.degrees(se3.pose_yaw_rad(pose)) - (0 if mount is None else 90)
     assert np.abs(yaw_deg).max() < 1.0
     # the same recording gives the same bits
-    with open_survey(files) as survey:
+    with open_survey(files, Reading()) as survey:
         again = survey.pose_edges()
     np.testing.assert_array_equal(again[0].xyz_m, edges[0].xyz_m)
 
@@ -189,7 +189,7 @@ def test_kiss_icp_finds_the_way_of_the_rover(tmp_path, mount):
 def test_kiss_icp_aligns_sweeps_of_a_rover_twice(tmp_path, caplog):
     """At 1 m/s; moved right, the sweeps show where the sensor was at their stamps."""
     pytest.importorskip("kiss_icp", reason="KISS-ICP is not installed (make kiss-icp)")
-    with caplog.at_level("INFO"), open_survey(record_sweeps(tmp_path)) as survey:
+    with caplog.at_level("INFO"), open_survey(record_sweeps(tmp_path), Reading()) as survey:
         track = survey.pose_edges()[0]
         np.testing.assert_array_equal(track.t_ns, survey.stamps())
     assert "once more" in caplog.text
@@ -209,7 +209,7 @@ def test_kiss_icp_leaves_recorded_poses_aside_where_that_is_set(tmp_path):
         entries.append(("/odom", t_ns, maker.odometry(t_ns, (7.0 * i, 0, 0))))
         entries.append(("/points", t_ns, maker.cloud(t_ns, seen_from(place_of(i), i))))
     path = maker.write(tmp_path / "run", entries)
-    with open_survey([str(path)], pose_kind=pose_kind.ESTIMATED) as survey:
+    with open_survey([str(path)], Reading(pose_kind=pose_kind.ESTIMATED)) as survey:
         track = survey.pose_edges()[0]
     expected_m = np.linalg.norm(place_of(N_SCANS - 1) - place_of(0))
     assert np.linalg.norm(track.xyz_m[-1] - track.xyz_m[0]) == pytest.approx(expected_m, abs=0.05)

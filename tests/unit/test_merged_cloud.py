@@ -12,7 +12,7 @@ from scanplan.project import dataset_entries, dataset_files
 from scanplan.recordings import frame_edges
 from scanplan.recordings.merged import merged_cloud, point_files
 from scanplan.recordings.motion import pose_kind
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 STEP_M = 0.025
@@ -49,7 +49,7 @@ def read(place, **settings):
 
     The two are in the coordinates that poses have.
     """
-    with open_survey(dataset_files.find_files(place), **(LIMITS | settings)) as survey:
+    with open_survey(dataset_files.find_files(place), Reading(**(LIMITS | settings))) as survey:
         t_ns = survey.stamps()
         assert (survey.pose_kind, survey.planar) == (pose_kind.STATIONS, False)
         pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1)

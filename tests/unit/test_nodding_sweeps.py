@@ -9,7 +9,7 @@ from helpers.refusals import assert_told
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, nodding_sweeps
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 START, S = bag_making.START_NS, 10**9
 BEAM_RAD = np.radians(np.arange(-40, 41))
@@ -73,7 +73,7 @@ def record(folder, *, poses="topic", about="y", n=100):
 
 @pytest.mark.parametrize("poses", ["topic", "tf"])
 def test_sweeps_of_a_nod_lie_on_the_wall_that_they_show(tmp_path, caplog, poses):
-    with caplog.at_level("INFO"), open_survey(record(tmp_path, poses=poses)) as survey:
+    with caplog.at_level("INFO"), open_survey(record(tmp_path, poses=poses), Reading()) as survey:
         assert not survey.planar and survey.sweep_times is None
         t_ns = survey.stamps()
         pose, _, covered = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1.0)
@@ -91,7 +91,7 @@ def test_sweeps_of_a_nod_lie_on_the_wall_that_they_show(tmp_path, caplog, poses)
 
 
 def test_of_a_robot_that_stands_the_mount_alone_moves(tmp_path):
-    with open_survey(record(tmp_path, poses="none")) as survey:
+    with open_survey(record(tmp_path, poses="none"), Reading()) as survey:
         t_ns = survey.stamps()
         pose, _, covered = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1.0)
         scans = list(survey.scans(range(4)))
@@ -101,7 +101,7 @@ def test_of_a_robot_that_stands_the_mount_alone_moves(tmp_path):
 
 
 def test_a_single_nod_can_be_asked_for(tmp_path):
-    with open_survey(record(tmp_path)) as survey:
+    with open_survey(record(tmp_path), Reading()) as survey:
         every = {scan.scan_id: scan for scan in survey.scans(range(4))}
         (third,) = survey.scans([2])
         with pytest.raises(ValueError, match="no scan 4"):
@@ -111,7 +111,7 @@ def test_a_single_nod_can_be_asked_for(tmp_path):
 
 
 def test_a_mount_that_turns_about_the_lasers_own_axis_stays_in_the_plane(tmp_path):
-    with open_survey(record(tmp_path, about="z")) as survey:
+    with open_survey(record(tmp_path, about="z"), Reading()) as survey:
         assert survey.planar and len(survey.stamps()) == 100
 
 

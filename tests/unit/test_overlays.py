@@ -19,7 +19,7 @@ from scanplan.plan.wall_ground import Bounds
 from scanplan.project import dataset_files
 from scanplan.rays import free_space, ray_set
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.registration import results
 
 CORNER = box(0, 0, 2, 2)
@@ -174,7 +174,7 @@ def test_the_hole_that_ended_a_drawing_is_divided(recordings_dir):
 def test_rooms_with_curved_walls_are_found(recordings_dir):
     """Floor that scans saw along curved walls, united and closed without a grid."""
     files = dataset_files.find_files(str(recordings_dir / "maps/office_d"))
-    with open_survey(files, min_range_m=0.1) as survey:
+    with open_survey(files, Reading(min_range_m=0.1)) as survey:
         edges, stamps = survey.pose_edges(), survey.stamps()
         pose, _, covered = frame_edges.chain_poses(edges, stamps, max_gap_s=2.0)
         chosen = np.flatnonzero(covered)[::12].tolist()

@@ -81,7 +81,7 @@ def test_doors_that_have_a_leaf_keep_it():
 def test_a_given_way_is_left_free_and_a_planned_one_goes_around(seed):
     way_m = [[1.0, 0.7], [1.0, 2.3], [1.6, 2.4]]
     site = load(*DOORS)
-    hung = hang(site, seed, track=random_leaves.draw_way(way_m))
+    hung = hang(site, seed, track=random_leaves.widen_track(way_m))
     building_route.check_way(way_m, hung.floor_m, hung.obstacles_m, "box")
     loose = hang(site, seed)
     planned = building_route.plan_building_route(

@@ -9,7 +9,7 @@ from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import pose_kind
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import tum
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
@@ -63,7 +63,7 @@ def record(folder, clouds, *, frame="camera_init", tf=False, path=None):
 
 def read(folder):
     """Return the poses and the points of all scans of a dataset."""
-    with open_survey(dataset_files.find_files(folder), **LIMITS) as survey:
+    with open_survey(dataset_files.find_files(folder), Reading(**LIMITS)) as survey:
         t_ns = survey.stamps()
         pose, _, _ = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1)
         return pose, [scan.xyz_m for scan in survey.scans(range(len(t_ns)))], survey.pose_kind
@@ -114,5 +114,5 @@ def test_the_goal_of_a_planner_is_no_pose(tmp_path):
         ("/move_base/global_plan", t_ns, maker.path(t_ns, [(t_ns, *TRACK[0])], frame="map")),
     ]
     maker.write(tmp_path / "run", entries)
-    with open_survey(dataset_files.find_files(tmp_path), **LIMITS) as survey:
+    with open_survey(dataset_files.find_files(tmp_path), Reading(**LIMITS)) as survey:
         assert survey.pose_kind == pose_kind.ESTIMATED

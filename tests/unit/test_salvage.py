@@ -14,7 +14,7 @@ from scanplan.errors import StageError
 from scanplan.recordings import bags
 from scanplan.recordings.integrity import unpacking
 from scanplan.recordings.salvage import salvaged_reader
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 
 def written(tmp_path, kind, n_scans=10):
@@ -137,7 +137,7 @@ def test_a_survey_says_what_of_it_is_lost(tmp_path):
     path = written(tmp_path, "sqlite3", n_scans=40)
     storage = storage_of(path)
     storage.write_bytes(storage.read_bytes()[:-20_000])
-    with open_survey([str(path / "metadata.yaml")], salvage=True) as survey:
+    with open_survey([str(path / "metadata.yaml")], Reading(salvage=True)) as survey:
         assert 10 < len(survey.stamps()) < 40
         (sentence,) = survey.describe_damage()
     assert_told(sentence, value="damaged recording")
@@ -156,7 +156,7 @@ def clouds_with_damage(maker, n_scans, n_damaged):
 def test_few_damaged_clouds_are_left_out_and_counted(tmp_path):
     maker = bag_making.Maker()
     path = maker.write(tmp_path / "run", clouds_with_damage(maker, 40, 2))
-    with open_survey([str(path)], max_damaged_share=0.05) as survey:
+    with open_survey([str(path)], Reading(max_damaged_share=0.05)) as survey:
         sizes = [len(scan.xyz_m) for scan in survey.scans(range(40))]
         assert_told(*survey.describe_damage(), value="2 of 40 scans")
     assert [i for i, size in enumerate(sizes) if size == 0] == [10, 11]
@@ -166,7 +166,7 @@ def test_too_many_damaged_clouds_are_a_fault_of_the_recording(tmp_path):
     maker = bag_making.Maker()
     path = maker.write(tmp_path / "run", clouds_with_damage(maker, 40, 3))
     said = r"scan 12 .*3 of 40 scans are damaged so far, more than advanced.input.max_damaged_share"
-    reading = open_survey([str(path)], max_damaged_share=0.05)
+    reading = open_survey([str(path)], Reading(max_damaged_share=0.05))
     with reading as survey, pytest.raises(StageError, match=said):
         list(survey.scans(range(40)))
 

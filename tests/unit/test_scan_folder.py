@@ -9,7 +9,7 @@ from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges, scan_folder
 from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.clouds import RangeLimits
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.store import tum
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
@@ -33,7 +33,7 @@ TWO = (
 
 def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):
     files = folder(tmp_path, ["1700000000.500000001.pcd", "1700000000.000000001.ply"], TWO)
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         assert survey.stamps().tolist() == [1_700_000_000_000_000_001, 1_700_000_000_500_000_001]
         pose, _, covered = frame_edges.chain_poses(
             survey.pose_edges(), survey.stamps(), max_gap_s=1
@@ -49,14 +49,14 @@ def test_stamps_in_names_are_interpolated_to_the_nanosecond(tmp_path):
 
 def test_stamps_in_nanoseconds(tmp_path):
     files = folder(tmp_path, ["1700000000500000001.pcd"], TWO)
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         assert survey.stamps().tolist() == [1_700_000_000_500_000_001]
 
 
 def test_other_names_are_taken_in_natural_order(tmp_path):
     names = ["s10.pcd", "s2.pcd", "s1.pcd"]
     poses = "\n".join(f"{t} {t} 0 0 0 0 0 1" for t in (1, 2, 5.5))
-    with open_survey(folder(tmp_path, names, poses), **LIMITS) as survey:
+    with open_survey(folder(tmp_path, names, poses), Reading(**LIMITS)) as survey:
         assert survey.stamps().tolist() == [10**9, 2 * 10**9, 5_500_000_000]
         shifts = [float((scan.xyz_m - POINTS)[0, 0]) for scan in survey.scans(range(3))]
         pose, gap_s, _ = frame_edges.chain_poses(survey.pose_edges(), survey.stamps(), max_gap_s=0)
@@ -68,7 +68,7 @@ def test_other_names_are_taken_in_natural_order(tmp_path):
 def test_a_mount_and_bad_poses(tmp_path):
     poses = TWO + "1700000002 0 0 0 0 0 0 0\n1700000003 nan 0 0 0 0 0 1\n"
     files = folder(tmp_path, ["1700000000.000000001.pcd"], poses)
-    with open_survey(files, base_from_sensor=[1, 0, 0, 0, 0, 90], **LIMITS) as survey:
+    with open_survey(files, Reading(base_from_sensor=[1, 0, 0, 0, 0, 90], **LIMITS)) as survey:
         edges = survey.pose_edges()
         pose, _, _ = frame_edges.chain_poses(edges, survey.stamps(), max_gap_s=1)
     assert len(edges[0].t_ns) == 2
@@ -79,7 +79,7 @@ def test_times_and_ranges(tmp_path):
     points, times = [[1, 0, 0], [np.nan, 0, 0], [0, 99, 0], [0, 1, 0]], [0.1, 0.2, 30.0, 0.15]
     path = write_pcd(tmp_path / "scans" / "1.0.pcd", points, ("time", times))
     (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
-    with open_survey([str(tmp_path / "poses.tum"), str(path)], **LIMITS) as survey:
+    with open_survey([str(tmp_path / "poses.tum"), str(path)], Reading(**LIMITS)) as survey:
         (scan,) = survey.scans([0])
     assert (scan.xyz_m.tolist(), scan.n_dropped) == ([[1, 0, 0], [0, 1, 0]], 2)
     np.testing.assert_allclose(scan.time_s, [0.1, 0.15], atol=1e-7)
@@ -91,7 +91,7 @@ def test_flat_clouds_are_planar(tmp_path):
         str(write_pcd(tmp_path / "scans" / "1.pcd", POINTS * (1, 1, 0))),
     ]
     (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         assert survey.planar
 
 
@@ -101,7 +101,7 @@ def test_an_empty_cloud_has_no_points(tmp_path):
         str(write_ply(tmp_path / "scans" / "1.ply", np.empty((0, 3)))),
     ]
     (tmp_path / "poses.tum").write_text("1 0 0 0 0 0 0 1\n")
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         assert [len(scan.xyz_m) for scan in survey.scans([0])] == [0]
 
 
@@ -118,7 +118,7 @@ def test_damaged_clouds(tmp_path, damage):
     files = folder(tmp_path, ["1700000000.5.pcd"], TWO)
     damage(tmp_path / "scans" / "1700000000.5.pcd")
     with (
-        open_survey(files, **LIMITS) as survey,
+        open_survey(files, Reading(**LIMITS)) as survey,
         pytest.raises(StageError, match=r"0.5.pcd: damaged"),
     ):
         list(survey.scans([0]))
@@ -139,7 +139,7 @@ def test_damaged_clouds(tmp_path, damage):
 )
 def test_poses_that_do_not_fit(tmp_path, names, poses, told):
     files = folder(tmp_path, names, poses)
-    with pytest.raises(StageError, match=told), open_survey(files, **LIMITS):
+    with pytest.raises(StageError, match=told), open_survey(files, Reading(**LIMITS)):
         pass
 
 
@@ -154,7 +154,7 @@ def test_asking_for_a_scan_that_is_not_there(tmp_path):
 def scans_of(folder):
     (folder / "poses.tum").write_text("100 0 0 0 0 0 0 1\n")
     files = dataset_files.find_files(folder)
-    with open_survey(files, **LIMITS) as survey:
+    with open_survey(files, Reading(**LIMITS)) as survey:
         return [scan.xyz_m for scan in survey.scans([0])]
 
 
@@ -224,5 +224,5 @@ def test_a_cloud_that_unpacks_to_too_much_is_refused_before_it_is_read(
     monkeypatch.setattr(scan_folder, "_read_by_open3d", None)
     files = folder(tmp_path, ["1700000000.5.pcd"], TWO)
     write_compressed_pcd(tmp_path / "scans/1700000000.5.pcd", n_points, unpacked, bytes(1000))
-    with open_survey(files, **LIMITS) as survey, pytest.raises(StageError, match=said):
+    with open_survey(files, Reading(**LIMITS)) as survey, pytest.raises(StageError, match=said):
         list(survey.scans([0]))

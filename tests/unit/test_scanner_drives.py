@@ -9,7 +9,7 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 START, S = bag_making.START_NS, 10**9
 BOTH = ["/front", "/rear"]
@@ -45,7 +45,7 @@ def record(folder, *, tf=True, rear_kind="cloud", broken=(), unset=()):
 
 
 def opened(files, **settings):
-    return open_survey(files, cloud_topic=BOTH, **settings)
+    return open_survey(files, Reading(cloud_topic=BOTH, **settings))
 
 
 def test_each_scan_lies_where_its_scanner_was(tmp_path, caplog):

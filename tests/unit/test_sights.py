@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers import floorplan_making
-from scanplan.report.sights import find_sights, trace_way
+from scanplan.report.sights import find_sights, simplify_track
 from scanplan.store.registered_scans import RegisteredScans
 
 # along the west wall of the small room, 1.2 m above the floor, and on the floor before it
@@ -95,6 +95,6 @@ def test_what_no_scan_sees_is_left_out():
 
 
 def test_the_way_keeps_its_corners_alone():
-    way_m = trace_way(registered((0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 3, 0)))
+    way_m = simplify_track(registered((0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 3, 0)))
     assert way_m.tolist() == [[0, 0], [2, 0], [2, 3]]
-    assert trace_way(registered((1, 2, 0))).tolist() == [[1, 2], [1, 2]]
+    assert simplify_track(registered((1, 2, 0))).tolist() == [[1, 2], [1, 2]]

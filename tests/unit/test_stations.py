@@ -10,7 +10,7 @@ from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
 from scanplan.recordings.motion import pose_kind
-from scanplan.recordings.survey import open_colours, open_survey
+from scanplan.recordings.survey import Reading, open_colours, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 50.0}
 RNG = np.random.default_rng(2)
@@ -24,7 +24,7 @@ WRITERS = {".e57": write_e57, ".ptx": ptx_making.write_ptx}
 
 
 def survey_of(path, **settings):
-    return open_survey(dataset_files.find_files(path), **(LIMITS | settings))
+    return open_survey(dataset_files.find_files(path), Reading(**(LIMITS | settings)))
 
 
 def same_points(found, expected):
@@ -91,9 +91,9 @@ SIDES = np.where(SPHERE > 0, 255, 40).astype(int)
 def read_coloured(path, **settings):
     """Return the points of the first station, and what their colours are."""
     files = dataset_files.find_files(path)
-    with open_survey(files, **(LIMITS | settings)) as survey:
+    with open_survey(files, Reading(**(LIMITS | settings))) as survey:
         (scan,) = survey.scans([0])
-    with open_colours(files, **(LIMITS | settings)) as read_colours:
+    with open_colours(files, Reading(**(LIMITS | settings))) as read_colours:
         return scan.xyz_m, None if read_colours is None else read_colours(0)
 
 

@@ -7,7 +7,7 @@ from scanplan.errors import StageError
 from scanplan.geometry import se3
 from scanplan.project import dataset_files
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 LIMITS = {"min_range_m": 0.1, "max_range_m": 100.0}
 START, STEP = bag_making.START_NS, 100_000_000
@@ -15,7 +15,7 @@ QUARTER = (0, 0, np.sqrt(0.5), np.sqrt(0.5))
 
 
 def opened(path, **settings):
-    return open_survey(dataset_files.find_files(path), **(LIMITS | settings))
+    return open_survey(dataset_files.find_files(path), Reading(**(LIMITS | settings)))
 
 
 def recorded(tmp_path, entries, maker=None, name="run"):

@@ -11,7 +11,7 @@ from scanplan.project import dataset_files, stage_settings
 from scanplan.project.settings import merge_settings
 from scanplan.project.settings_check import check_settings
 from scanplan.recordings import frame_edges
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 
 START = bag_making.START_NS
 LENGTHS_M = [("cm", 0.01, "ft", 0.3048), ("mm", 0.001, "mm", 0.001), ("m", 1.0, "in", 0.0254)]
@@ -68,7 +68,7 @@ WRITERS = [write_bag, write_folder, write_stations, write_las]
 
 
 def read(folder, **units):
-    with open_survey(dataset_files.find_files(folder), **units) as survey:
+    with open_survey(dataset_files.find_files(folder), Reading(**units)) as survey:
         t_ns = survey.stamps()
         poses, _, _ = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=np.inf)
         return poses[:, :3, 3], [scan.xyz_m for scan in survey.scans(range(len(t_ns)))]
@@ -102,7 +102,7 @@ def test_scans_that_are_chosen_are_read_again_alike(tmp_path):
     units = {"cloud_unit": "cm", "pose_unit": "ft"}
     chosen = np.array([1, 4])
     (tmp_path / "some").mkdir()
-    with open_survey(dataset_files.find_files(tmp_path / "all"), **units) as survey:
+    with open_survey(dataset_files.find_files(tmp_path / "all"), Reading(**units)) as survey:
         t_ns = survey.stamps()[chosen]
         poses, _, _ = frame_edges.chain_poses(survey.pose_edges(), t_ns, max_gap_s=1.0)
         selected_bag.copy_selected_scans(tmp_path / "some/run.bag", survey, chosen, poses)
@@ -116,7 +116,7 @@ def test_settings_that_are_written_beside_recordings_can_be_given(tmp_path):
         SETTINGS, {"advanced": {"input": {"cloud_unit": "cm", "pose_unit": "ft"}}}
     )
     reading = stage_settings.select_section(told, "input")
-    with open_survey(dataset_files.find_files(tmp_path), **reading) as survey:
+    with open_survey(dataset_files.find_files(tmp_path), Reading(**reading)) as survey:
         selected = selected_bag.reading_settings(survey, reading)
     for own in (selected, reduced_bag.reduced_settings(reading, {"keep_every": 3})):
         check_settings(merge_settings(SETTINGS, own), SCHEMA, "selected.bag.yaml")

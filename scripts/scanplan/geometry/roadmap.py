@@ -92,7 +92,7 @@ def cheapest_ways(grid: RoadmapGrid, stop: int) -> tuple[FloatArray, IntArray]:
     return dijkstra(grid.steps, directed=False, indices=stop, return_predecessors=True)
 
 
-def trace_way(cell_before: IntArray, stop: int, cell: int) -> list[int]:
+def trace_cells(cell_before: IntArray, stop: int, cell: int) -> list[int]:
     """Return the cells from a stop of `cheapest_ways` to a cell that can be reached from it."""
     cells = [cell]
     while cells[-1] != stop:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from scanplan.geometry.roadmap import RoadmapGrid, trace_way
+from scanplan.geometry.roadmap import RoadmapGrid, trace_cells
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -42,7 +42,7 @@ class StopWays:
         most = self._find_cost(one, other) * (1 + ROUNDING)
         near, start, (_, before) = self._search(one, most)
         end = int(np.searchsorted(near, self._cells[other]))
-        return near[trace_way(before, start, end)]
+        return near[trace_cells(before, start, end)]
 
     def _find_cost(self, one: int, other: int) -> float:
         while self._costs[one, other] == np.inf:

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from scanplan.project import dataset_files
 from scanplan.recordings.cloud_reading import CloudReading
@@ -18,33 +19,12 @@ from scanplan.stage import log
 from scanplan.types import Array
 
 
-@contextmanager
-def open_survey(
-    files: Sequence[str],
-    *,
-    cloud_topic: str | Sequence[str] | None = None,
-    pose_topic: str | None = None,
-    base_frame: str | None = None,
-    base_from_sensor: Sequence[float] | None = None,
-    ros2_release: str = "humble",
-    min_range_m: float = 0.0,
-    max_range_m: float = math.inf,
-    cloud_unit: str = "m",
-    pose_unit: str = "m",
-    max_damaged_share: float = 0.0,
-    salvage: bool = False,
-    deskew: bool = True,
-    pose_kind: str = FOUND,
-    motion: SensorMotion | None = None,
-    storey: int | None = None,
-    known_t_ns: Mapping[int, int] | None = None,
-) -> Iterator[Survey]:
-    """Open all recordings of a dataset as one survey.
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How recordings are read: the section `input` of the settings.
 
-    Parameters
+    Attributes
     ----------
-    files : sequence of str
-        As `dataset_files.find_files` gives them.
     cloud_topic, pose_topic : str, optional
         Where there are several candidates. `cloud_topic` may be several, of the scanners of one
         robot; `pose_topic` may be /tf.
@@ -64,14 +44,56 @@ def open_survey(
     salvage : bool
         Whether to read what is whole of damaged bags.
     deskew : bool
-        Whether to move points to where they would have been seen at their scan's stamp, given a
-        `motion`.
+        Whether to move points to where they would have been seen at their scan's stamp, where the
+        sensor's motion is given.
     pose_kind : str, optional
         Of which kind the poses are (`pose_kind.find_pose_kind`); found by default.
-    motion : trajectory.SensorMotion, optional
-        How the sensor moved.
     storey : int, optional
         Which of a merged cloud, 0 the lowest; by default the one with most floor.
+    """
+
+    cloud_topic: str | Sequence[str] | None = None
+    pose_topic: str | None = None
+    base_frame: str | None = None
+    base_from_sensor: Sequence[float] | None = None
+    ros2_release: str = "humble"
+    min_range_m: float = 0.0
+    max_range_m: float = math.inf
+    cloud_unit: str = "m"
+    pose_unit: str = "m"
+    max_damaged_share: float = 0.0
+    salvage: bool = False
+    deskew: bool = True
+    pose_kind: str = FOUND
+    storey: int | None = None
+
+    def of_clouds(self) -> CloudReading:
+        """Return what of it readers of clouds go by."""
+        return CloudReading(
+            limits=RangeLimits(self.min_range_m, self.max_range_m),
+            base_from_sensor=self.base_from_sensor,
+            units=Units(self.cloud_unit, self.pose_unit),
+            max_damaged_share=self.max_damaged_share,
+            pose_kind=self.pose_kind,
+        )
+
+
+@contextmanager
+def open_survey(
+    files: Sequence[str],
+    reading: Reading,
+    *,
+    motion: SensorMotion | None = None,
+    known_t_ns: Mapping[int, int] | None = None,
+) -> Iterator[Survey]:
+    """Open all recordings of a dataset as one survey.
+
+    Parameters
+    ----------
+    files : sequence of str
+        As `dataset_files.find_files` gives them.
+    motion : trajectory.SensorMotion, optional
+        How the sensor moved.
     known_t_ns : dict of int to int, optional
         Stamps by scan_id of the scans that are asked for, of a survey that is `as_recorded`.
 
@@ -84,26 +106,14 @@ def open_survey(
     StageError
         If a recording is damaged or leaves open what to use.
     """
-    topics_and_frame = {
-        "cloud_topic": cloud_topic,
-        "pose_topic": pose_topic,
-        "base_frame": base_frame,
-    }
-    reading = CloudReading(
-        limits=RangeLimits(min_range_m, max_range_m),
-        base_from_sensor=base_from_sensor,
-        units=Units(cloud_unit, pose_unit),
-        max_damaged_share=max_damaged_share,
-        pose_kind=pose_kind,
-    )
-    if scaled := reading.units.describe():
+    clouds = reading.of_clouds()
+    if scaled := clouds.units.describe():
         log.log_line(scaled)
-    opening = {"ros2_release": ros2_release, "salvage": salvage}
     with ExitStack() as stack:
-        survey = _open_points(files, storey, reading)
+        survey = _open_points(files, reading.storey, clouds)
         if survey is None:
-            survey = _open_recordings(files, stack, opening, topics_and_frame, reading, known_t_ns)
-        yield DeskewedSurvey(survey, motion) if deskew and motion is not None else survey
+            survey = _open_recordings(files, stack, reading, known_t_ns)
+        yield DeskewedSurvey(survey, motion) if reading.deskew and motion is not None else survey
 
 
 def is_as_recorded(survey: Survey) -> bool:
@@ -113,13 +123,13 @@ def is_as_recorded(survey: Survey) -> bool:
 
 @contextmanager
 def open_colours(
-    files: Sequence[str], **reading: Any
+    files: Sequence[str], reading: Reading
 ) -> Iterator[Callable[[int], Array | None] | None]:
     """Open what tells the colours of a dataset's points.
 
     Parameters
     ----------
-    files, **reading
+    files, reading
         As of `open_survey`.
 
     Yields
@@ -133,7 +143,7 @@ def open_colours(
         return
     from scanplan.recordings.stations.station_scans import StationScans
 
-    with open_survey(files, **reading) as survey:
+    with open_survey(files, reading) as survey:
         if isinstance(survey, StationScans) and survey.has_colours:
             yield survey.read_colours
         else:
@@ -169,44 +179,45 @@ def _open_points(files: Sequence[str], storey: int | None, reading: CloudReading
 def _open_recordings(
     files: Sequence[str],
     stack: ExitStack,
-    opening: Mapping[str, Any],
-    topics_and_frame: Mapping[str, Any],
-    reading: CloudReading,
+    reading: Reading,
     known_t_ns: Mapping[int, int] | None,
 ) -> Survey:
+    clouds = reading.of_clouds()
     # rosbags costs a second to import: where it is needed alone
     if dataset_files.is_scan_folder(files):
         from scanplan.recordings import scan_folder
 
-        return scan_folder.ScanFolder(files, reading)
+        return scan_folder.ScanFolder(files, clouds)
     if dataset_files.is_grid_map(files):
         from scanplan.recordings import grid_map_scans
 
-        return grid_map_scans.GridMapScans(files, reading)
+        return grid_map_scans.GridMapScans(files, clouds)
     if dataset_files.is_las_drive(files):
         from scanplan.recordings import las_drive
 
-        return las_drive.LasDrive(files, reading)
+        return las_drive.LasDrive(files, clouds)
     from scanplan.recordings import bags, recorded_survey
 
     opened = [
-        stack.enter_context(bags.open_bag(path, **opening))
+        stack.enter_context(
+            bags.open_bag(path, ros2_release=reading.ros2_release, salvage=reading.salvage)
+        )
         for path in dataset_files.group_recordings(files)
     ]
-    names = topics_and_frame["cloud_topic"]
+    names = reading.cloud_topic
+    open_topic = partial(
+        recorded_survey.BagSurvey,
+        opened,
+        pose_topic=reading.pose_topic,
+        base_frame=reading.base_frame,
+        reading=clouds,
+    )
     if names is None or isinstance(names, str):
         from scanplan.recordings import nodding_sweeps
 
-        survey = recorded_survey.BagSurvey(
-            opened, **topics_and_frame, reading=reading, known_t_ns=known_t_ns
-        )
+        survey = open_topic(cloud_topic=names, known_t_ns=known_t_ns)
         return nodding_sweeps.take_nods(survey) if known_t_ns is None else survey
     from scanplan.recordings import scanner_drives
 
-    surveys = [
-        recorded_survey.BagSurvey(
-            opened, **{**topics_and_frame, "cloud_topic": name}, reading=reading
-        )
-        for name in names
-    ]
+    surveys = [open_topic(cloud_topic=name) for name in names]
     return scanner_drives.ScannerDrives(surveys, max_damaged_share=reading.max_damaged_share)

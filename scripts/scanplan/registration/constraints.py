@@ -151,10 +151,12 @@ def measure_constraint(
         source.cloud,
         target.cloud,
         start,
-        method=settings.icp_method,
-        distances_m=distances_m,
-        max_iterations=settings.icp_max_iterations,
-        sure_within_m=settings.fitness_distance_m,
+        icp.IcpSettings(
+            method=settings.icp_method,
+            distances_m=distances_m,
+            max_iterations=settings.icp_max_iterations,
+            sure_within_m=settings.fitness_distance_m,
+        ),
     )
     correction = se3.invert_pose(start) @ fit.target_from_source
     if not fit.sound or _is_large(correction, settings):

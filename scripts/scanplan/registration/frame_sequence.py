@@ -64,10 +64,12 @@ def _align_scan(
         scan.cloud,
         target.cloud,
         constraints.relative_pose(scan, target),
-        method=settings.icp_method,
-        distances_m=settings.icp_distances_m,
-        max_iterations=settings.icp_max_iterations,
-        n_points=settings.fitness_points,
+        icp.IcpSettings(
+            method=settings.icp_method,
+            distances_m=settings.icp_distances_m,
+            max_iterations=settings.icp_max_iterations,
+            n_points=settings.fitness_points,
+        ),
     )
     moved = replace(scan, world_from_cloud=target.world_from_cloud @ fit.target_from_source)
     distance_m = settings.icp_distances_m[-1]

@@ -44,30 +44,14 @@ class IcpResult:
     sound: bool
 
 
-def align_clouds(
-    source: PreparedCloud,
-    target: PreparedCloud,
-    target_from_source: FloatArray,
-    *,
-    method: str,
-    distances_m: Sequence[float],
-    max_iterations: int,
-    n_points: int | None = None,
-    sure_within_m: float = math.inf,
-) -> IcpResult:
-    """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
+@dataclass(frozen=True, kw_only=True)
+class IcpSettings:
+    """How two clouds are aligned.
 
-    Directions that the pairs determine far worse than the others (along a corridor) keep the
-    start's value, but for point to point.
-
-    Parameters
+    Attributes
     ----------
-    source, target : PreparedCloud
-        Both in space or both in the plane. In the plane the method is point to line, whatever
-        `method` says.
-    target_from_source : (4, 4) float64
-        Where to start.
     method : {"gicp", "point_to_plane", "point_to_point"}
+        In the plane it is point to line, whatever this says.
     distances_m : sequence of float, at least one
         Points farther apart are no pair: first for the rough, then for the fine alignment.
     max_iterations : int
@@ -78,29 +62,55 @@ def align_clouds(
         In the plane, a motion farther than that counts only as far as it does not hang on one thing
         that may have moved, see `planar_icp.leave_out_a_thing`.
     """
-    if method == POINT_TO_POINT and not target.planar:
-        step = prepared_clouds.probe_step(source, n_points)
-        points_m = source.xyz_m[::step]
-        return _align_by_points(points_m, target, target_from_source, distances_m, max_iterations)
+
+    method: str
+    distances_m: Sequence[float]
+    max_iterations: int
+    n_points: int | None = None
+    sure_within_m: float = math.inf
+
+
+def align_clouds(
+    source: PreparedCloud,
+    target: PreparedCloud,
+    target_from_source: FloatArray,
+    settings: IcpSettings,
+) -> IcpResult:
+    """Refine the motion from source to target by iterative closest point (thesis, 3.2.2 and 3.5).
+
+    Directions that the pairs determine far worse than the others (along a corridor) keep the
+    start's value, but for point to point.
+
+    Parameters
+    ----------
+    source, target : PreparedCloud
+        Both in space or both in the plane.
+    target_from_source : (4, 4) float64
+        Where to start.
+    """
+    if settings.method == POINT_TO_POINT and not target.planar:
+        step = prepared_clouds.probe_step(source, settings.n_points)
+        return _align_by_points(source.xyz_m[::step], target, target_from_source, settings)
     motion = target_from_source
     information = np.zeros((6, 6))
-    for distance_m in distances_m:
-        is_fine = distance_m == distances_m[-1]
+    finest_m = settings.distances_m[-1]
+    for distance_m in settings.distances_m:
+        is_fine = distance_m == finest_m
         # a rough alignment needs not arrive
         step_done = _STEP_DONE if is_fine else 2 * _STEP_DONE
-        limits = (distance_m, max_iterations, step_done)
         if target.planar:
-            aligned = planar_icp.align_planar(source, target, motion, *limits)
+            most = settings.max_iterations
+            aligned = planar_icp.align_planar(source, target, motion, distance_m, most, step_done)
         else:
             if is_fine:
                 source = _without_other_sides(source, target, motion, distance_m)
-            aligned = _align_spatial(source, target, motion, method, *limits)
+            aligned = _align_spatial(source, target, motion, settings, distance_m, step_done)
         if aligned is None:
             return _unsound(target_from_source)
         motion, information = aligned
     moved_m = np.linalg.norm((motion - target_from_source)[:3, 3])
-    if target.planar and moved_m > sure_within_m:
-        information = planar_icp.leave_out_a_thing(source, target, motion, distances_m[-1])
+    if target.planar and moved_m > settings.sure_within_m:
+        information = planar_icp.leave_out_a_thing(source, target, motion, finest_m)
     return _keep_unobservable(target_from_source, motion, information, source.reach_m)
 
 
@@ -108,13 +118,14 @@ def _align_by_points(
     points_m: FloatArray,
     target: PreparedCloud,
     start: FloatArray,
-    distances_m: Sequence[float],
-    max_iterations: int,
+    settings: IcpSettings,
 ) -> IcpResult:
     motion = start
     information = np.zeros((6, 6))
-    for distance_m in distances_m:
-        aligned = point_icp.align_points(points_m, target.xyz_m, motion, distance_m, max_iterations)
+    for distance_m in settings.distances_m:
+        aligned = point_icp.align_points(
+            points_m, target.xyz_m, motion, distance_m, settings.max_iterations
+        )
         if aligned is None:
             return _unsound(start)
         motion, information = aligned
@@ -148,9 +159,8 @@ def _align_spatial(
     source: PreparedCloud,
     target: PreparedCloud,
     start: FloatArray,
-    method: str,
+    settings: IcpSettings,
     distance_m: float,
-    max_iterations: int,
     step_done: float,
 ) -> tuple[FloatArray, FloatArray] | None:
     """Return motion and information, None without pairs."""
@@ -159,9 +169,9 @@ def _align_spatial(
         source.features,
         target.tree,
         init_T_target_source=start,
-        registration_type=_METHODS[method],
+        registration_type=_METHODS[settings.method],
         max_correspondence_distance=distance_m,
-        max_iterations=max_iterations,
+        max_iterations=settings.max_iterations,
         rotation_epsilon=step_done,
         translation_epsilon=step_done,
     )
@@ -171,7 +181,10 @@ def _align_spatial(
     order = [3, 4, 5, 0, 1, 2]
     information = np.asarray(result.H)[order][:, order]
     motion = se3.nearest_rigid(np.asarray(result.T_target_source))
-    return motion, information if method == "gicp" else information / planar_icp.PAIR_SIGMA_M**2
+    return (
+        motion,
+        information if settings.method == "gicp" else information / planar_icp.PAIR_SIGMA_M** 2,
+    )
 
 
 def _keep_unobservable(

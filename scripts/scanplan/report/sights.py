@@ -166,9 +166,9 @@ def _list_ends(plan: FloorPlan, rays: RaySet, scan: int, what: _Asked) -> list[i
     return np.rint((thinned_m - rays.sensors_m[scan, :2]) * _PER_M).astype(int).ravel().tolist()
 
 
-def trace_way(registered: RegisteredScans) -> FloatArray:
-    """Return the sensor's way (n, 2), map frame, as far as a drawing shows it."""
+def simplify_track(registered: RegisteredScans) -> FloatArray:
+    """Return the sensor's track (n, 2), map frame, as far as a drawing shows it."""
     places_m = registered.map_from_sensor[:, :2, 3]
-    # a single scan is a way, too
+    # a single scan is a track, too
     track = shapely.LineString(np.concatenate([places_m[:1], places_m]))
     return shapely.get_coordinates(overlays.simplify_shapes(track, _CELL_M))

@@ -77,9 +77,11 @@ class SubsetRegistration:
             source,
             target,
             start,
-            method="gicp",
-            distances_m=limits.icp_distances_m,
-            max_iterations=limits.icp_max_iterations,
+            icp.IcpSettings(
+                method="gicp",
+                distances_m=limits.icp_distances_m,
+                max_iterations=limits.icp_max_iterations,
+            ),
         )
         error = se3.invert_pose(true) @ found.target_from_source
         turn_deg = np.degrees(se3.turn_between_rad(np.eye(4), error))

@@ -7,7 +7,7 @@ import numpy as np
 
 from scanplan.lab.evaluation import truth_file
 from scanplan.recordings.clouds import Scan
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.registration.registration_settings import SequentialSettings, registration_settings
 from scanplan.stage import log
 from scanplan.store import pose_columns, scan_cache, schemas, tables
@@ -51,7 +51,7 @@ def sweep_gates(
     every = gates.list_gates()
     with (
         scan_cache.open_scan_cache(swept) as raw,
-        open_survey(recordings, **reading) as survey,
+        open_survey(recordings, Reading(**reading)) as survey,
     ):
         planar = survey.planar
         scans = survey.scans(scan_ids)

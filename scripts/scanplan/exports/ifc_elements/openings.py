@@ -1,7 +1,7 @@
 """Openings of a building model, and the doors and windows in them."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -114,16 +114,12 @@ def _add_opening(
     if np.isnan(thickness_m):
         thickness_m = plan.assumed_thickness_m
     symbol = _list_curves(model, kind, frame.length_m, thickness_m, swing)
-    filling = _add_filling(
-        model,
-        global_id,
-        kind,
-        frame.length_m,
-        extent_m,
-        attributes,
-        colour,
-        symbol if model.is_editable else (),
-    )
+    attributes["OverallHeight"] = extent_m[1] - extent_m[0]
+    attributes["OverallWidth"] = frame.length_m
+    filling = model.known(_FILLED_BY[kind], global_id, **attributes)
+    leaf = model.prism(shapely.box(0, -LEAF_M / 2, frame.length_m, LEAF_M / 2), *extent_m)
+    model.colour([leaf], colour)
+    filling.Representation = model.shape([leaf], symbol=symbol if model.is_editable else ())
     if void is not None:
         model.join("IfcRelFillsElement", filling, RelatingOpeningElement=void)
     _describe_filling(model, storey, row, filling)
@@ -170,31 +166,6 @@ def _add_bound(
     bound.Representation = model.shape([], line_m)
     _describe_opening(model, storey, row, bound)
     return bound
-
-
-def _add_filling(
-    model: IfcModel,
-    global_id: str,
-    kind: str,
-    width_m: float,
-    extent_m: tuple[float, float],
-    attributes: dict[str, Any],
-    colour: str,
-    symbol: Sequence[entity_instance],
-) -> entity_instance:
-    """Add a door or window."""
-    low_m, high_m = extent_m
-    filling = model.known(
-        _FILLED_BY[kind],
-        global_id,
-        OverallHeight=high_m - low_m,
-        OverallWidth=width_m,
-        **attributes,
-    )
-    leaf = model.prism(shapely.box(0, -LEAF_M / 2, width_m, LEAF_M / 2), low_m, high_m)
-    model.colour([leaf], colour)
-    filling.Representation = model.shape([leaf], symbol=symbol)
-    return filling
 
 
 def _list_curves(

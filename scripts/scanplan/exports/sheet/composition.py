@@ -254,9 +254,8 @@ def _dimension(
         for path in symbol_paths(symbol)
     ]
     reach = overlays.unite_shapes([drawn, *swings, *map(page.place_shape, shown.beside)])
-    return list(
-        dimensions.dimension_facades(page, outline, reach, known, uncertain, shown.spans_m, space)
-    )
+    ground = dimensions.Ground(outline, reach, known, uncertain)
+    return list(dimensions.dimension_facades(page, ground, shown.spans_m, space))
 
 
 def _leave_loose_walls(built: BaseGeometry, plan: FloorPlan) -> BaseGeometry:

@@ -53,14 +53,35 @@ class _Facade:
         return (self.x0, at_x) if self.y0 < self.y1 else (at_x, self.x1)
 
 
+@dataclass(frozen=True)
+class Ground:
+    """What chains of dimensions go by, on paper.
+
+    Attributes
+    ----------
+    outline : shapely geometry
+        All that is built, openings closed.
+    reach : shapely geometry
+        All that chains keep off: outline and symbols.
+    known : shapely geometry
+        Of the outline: rooms, and walls of which both sides were seen.
+    uncertain : shapely geometry
+        Spans of rooms' outlines that were not seen, and walls that are to be verified.
+    """
+
+    outline: BaseGeometry
+    reach: BaseGeometry
+    known: BaseGeometry
+    uncertain: BaseGeometry
+
+    def turn(self, turn: FloatArray) -> "Ground":
+        """Return it turned by a rotation (2, 2)."""
+        shapes = (self.outline, self.reach, self.known, self.uncertain)
+        return Ground(*(shapely.transform(shape, lambda xy: xy @ turn.T) for shape in shapes))
+
+
 def dimension_facades(
-    page: Page,
-    outline: BaseGeometry,
-    reach: BaseGeometry,
-    known: BaseGeometry,
-    uncertain: BaseGeometry,
-    openings_m: FloatArray,
-    space: LabelSpace,
+    page: Page, ground: Ground, openings_m: FloatArray, space: LabelSpace
 ) -> Iterator[Dimension]:
     """Yield chains along all four sides of a plan, and its whole width and depth.
 
@@ -69,14 +90,6 @@ def dimension_facades(
 
     Parameters
     ----------
-    outline : shapely geometry
-        All that is built, openings closed, on paper.
-    reach : shapely geometry
-        All that chains keep off: outline and symbols, on paper.
-    known : shapely geometry
-        Of the outline: rooms, and walls of which both sides were seen, on paper.
-    uncertain : shapely geometry
-        Spans of rooms' outlines that were not seen, and walls that are to be verified, on paper.
     openings_m : (n, 2, 2) float
         Map frame.
     """
@@ -84,19 +97,16 @@ def dimension_facades(
     for quarter in range(4):
         # each side in turn is brought below
         turn = rotation(-90 * quarter)
-        turned, turned_known, turned_uncertain, turned_reach = (
-            shapely.transform(shape, lambda xy, turn=turn: xy @ turn.T)
-            for shape in (outline, known, uncertain, reach)
-        )
-        x0, y0, x1, _ = turned.bounds
+        turned = ground.turn(turn)
+        x0, y0, x1, _ = turned.outline.bounds
         reach_mm = END_M * page.mm_per_m
-        facades = _find_facades(turned, reach_mm)
+        facades = _find_facades(turned.outline, reach_mm)
         stops = _chain_stops(facades, openings @ turn.T, reach_mm, (x0, x1))
-        about = _find_assumed_ends(turned, turned_known, reach_mm)
-        upright = _find_upright_edges(turned)
-        uncertain_strip = overlays.buffer_shapes(turned_uncertain, reach_mm)
+        about = _find_assumed_ends(turned.outline, turned.known, reach_mm)
+        upright = _find_upright_edges(turned.outline)
+        uncertain_strip = overlays.buffer_shapes(turned.uncertain, reach_mm)
         about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, reach_mm)}
-        level = turned_reach.bounds[1]
+        level = turned.reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
             yield from _draw_chain(page, stops, level, turn, space, about)

@@ -1,6 +1,7 @@
 """Words in a plan: rooms' stamps, widths of openings, heights of low walls, marks of doubt."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -148,10 +149,10 @@ def label_openings(
         mark = _mark_doubt(page, str(symbol.facts.get("about", "")), verify=symbol.verify)
         text = _join_words(text, mark)
         if text:
-            kind = "verify" if mark else "width"
             ends = page.to_paper(symbol.axis_m)
+            said = _say_small("verify" if mark else "width", text, ends, symbol.element)
             thick_mm = symbol.thickness_m * page.mm_per_m
-            yield from _place_beside(page, kind, text, ends, thick_mm, symbol.element, space)
+            yield from _place_beside(page, said, ends, thick_mm, space)
 
 
 def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word]:
@@ -178,9 +179,9 @@ def label_walls(page: Page, plan: FloorPlan, space: LabelSpace) -> Iterator[Word
         for said, along_m in words:
             if said:
                 kind = "verify" if said.endswith("?") else "note"
-                element = f"wall-{plan.walls['wall'][row]}"
                 ends = page.to_paper(along_m)
-                yield from _place_beside(page, kind, said, ends, thick_mm, element, space)
+                word = _say_small(kind, said, ends, f"wall-{plan.walls['wall'][row]}")
+                yield from _place_beside(page, word, ends, thick_mm, space)
 
 
 def _find_radii_m(plan: FloorPlan) -> dict[int, float]:
@@ -214,29 +215,27 @@ def _join_words(text: str, mark: str) -> str:
     return f"{text} {mark}" if text and mark not in ("", "?") else text + mark
 
 
+def _say_small(kind: str, text: str, ends: FloatArray, element: str) -> Word:
+    """Return a small word in the middle of a stretch of wall on paper."""
+    return Word(kind, text, ends.mean(axis=0), Letters.SMALL, element=element)
+
+
 def _place_beside(
-    page: Page,
-    kind: str,
-    text: str,
-    ends: FloatArray,
-    thick_mm: float,
-    element: str,
-    space: LabelSpace,
+    page: Page, word: Word, ends: FloatArray, thick_mm: float, space: LabelSpace
 ) -> Iterator[Word]:
-    """Yield a text along a stretch of wall on paper, beside it or led out, if there is room."""
+    """Yield a word along a stretch of wall on paper, beside it or led out, if there is room."""
     along, turn_deg = read_along(ends)
     above = np.array([-along[1], along[0]])
-    middle = ends.mean(axis=0)
     length = np.hypot(*(ends[1] - ends[0]))
     candidates: list[Candidate] = []
     for away, cost in ((0.5, 0.0), (1.5, 1.5)):
         for side in (1, -1):
             for shift in (0.0, 0.25, -0.25):
                 offset = thick_mm / 2 + (0.6 + away) * Letters.SMALL
-                place = middle + side * offset * above + shift * length * along
-                word = Word(kind, text, place, Letters.SMALL, turn_deg, element=element)
-                candidates.append(Candidate([word], cost + abs(shift)))
-    candidates += lead_out(Word(kind, text, middle, Letters.SMALL, element=element), 4)
+                place = word.place + side * offset * above + shift * length * along
+                moved = replace(word, place=place, turn_deg=turn_deg)
+                candidates.append(Candidate([moved], cost + abs(shift)))
+    candidates += lead_out(word, 4)
     chosen = space.place(candidates, most=LabelSpace.OFF_WALL)
     if chosen is not None:
         yield to_plan_word(page, chosen.words[0])

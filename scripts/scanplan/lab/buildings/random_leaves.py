@@ -27,7 +27,7 @@ _STATES = (
 )
 
 
-def draw_way(waypoints_m: ArrayLike, reach_m: float = 0.0) -> BaseGeometry:
+def widen_track(waypoints_m: ArrayLike, reach_m: float = 0.0) -> BaseGeometry:
     """Return the ground that a rover's way (n, 2) needs, whose sensor reaches so far ahead."""
     clearance_m = max(ROVER_RADIUS_M, reach_m)
     return overlays.buffer_shapes(LineString(np.asarray(waypoints_m, float)), 1.2 * clearance_m)
@@ -55,8 +55,8 @@ def hang_leaves(
     slice_height_m, planar
         See `building.load_building`.
     track : shapely geometry or None
-        Ground of the rover's way where it is given, see `draw_way`; one that is yet to be planned
-        goes around them.
+        Ground of the rover's way where it is given, see `widen_track`; one that is yet to be
+        planned goes around them.
 
     Returns
     -------

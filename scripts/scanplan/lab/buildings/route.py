@@ -161,7 +161,7 @@ def join_places(
     corners_m = []
     for a, b in pairwise(stops):
         _, cell_before = roadmap.cheapest_ways(grid, a)
-        leg = roadmap.trace_way(cell_before, a, b)
+        leg = roadmap.trace_cells(cell_before, a, b)
         corners_m.append(_straighten(grid, leg, part, obstacles_m))
     return np.vstack([*corners_m, grid.xy_m[stops[-1]]])
 
@@ -292,7 +292,7 @@ def _join_stops(
     legs = []
     for a, b in pairwise([*order, order[0]] if closed else order):
         _, cell_before = searches[a]
-        legs.append(roadmap.trace_way(cell_before, stops[a], stops[b]))
+        legs.append(roadmap.trace_cells(cell_before, stops[a], stops[b]))
     return legs
 
 

@@ -76,7 +76,7 @@ def prepare_site(
             planar=planar,
             track=None
             if given_m is None or route["route"] != "given"
-            else random_leaves.draw_way(given_m, abs(mount["forward_m"])),
+            else random_leaves.widen_track(given_m, abs(mount["forward_m"])),
         )
     driven = building_route.plan_building_route(
         found,

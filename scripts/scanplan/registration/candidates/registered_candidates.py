@@ -13,7 +13,7 @@ import numpy as np
 from scanplan.recordings.clouds import Scan
 from scanplan.recordings.integrity.damaged_clouds import DamagedClouds
 from scanplan.recordings.motion import pose_kind, trajectory
-from scanplan.recordings.survey import open_survey
+from scanplan.recordings.survey import Reading, open_survey
 from scanplan.registration import batches, mapping
 from scanplan.registration.batches import CandidateScans
 from scanplan.registration.constraints import PoseConstraint
@@ -198,7 +198,7 @@ def register_recorded(
     motion = None if recorded.moved is None else read_motion(recorded.moved)
     with open_survey(
         recorded.recordings,
-        **recorded.reading,
+        Reading(**recorded.reading),
         motion=motion,
         known_t_ns=read_known_stamps(recorded.poses),
     ) as opened:

@@ -96,9 +96,7 @@ def find_submap(
             source.cloud,
             target.cloud,
             start,
-            method="none",
-            distances_m=(2 * cell_m, _FINE_M),
-            max_iterations=30,
+            icp.IcpSettings(method="none", distances_m=(2 * cell_m, _FINE_M), max_iterations=30),
         )
         if not fit.sound:
             continue
