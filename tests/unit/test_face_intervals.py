@@ -80,6 +80,20 @@ def test_a_stretch_ends_where_most_of_what_is_near_is_seen_to_end():
     assert stretch.high_m == pytest.approx(2.0, abs=0.011)
 
 
+@pytest.mark.parametrize("offset_m", [[0.03], [0.03, 0.03, 0.03], [0.03, 0.5, 0.03, 0.03]])
+def test_a_line_goes_to_few_points_without_a_turn(offset_m):
+    """They lie 3 cm before it, but for one that is too far off to be of it."""
+    along_m = 1 + 0.02 * np.arange(len(offset_m))
+    line = intervals.refit_to_points(AXIS, along_m, np.array(offset_m))
+    assert line.offset_m(np.array([[2.0, 0.03]])) == pytest.approx([0.0])
+    np.testing.assert_array_equal(line.normal, AXIS.normal)
+
+
+def test_a_line_without_points_stays():
+    line = intervals.refit_to_points(AXIS, np.empty(0), np.empty(0))
+    np.testing.assert_array_equal(line.centre, AXIS.centre)
+
+
 def test_nothing_seen_is_no_stretch():
     assert found([]) == []
 
