@@ -26,6 +26,7 @@ from scanplan.changes import (
 )
 from scanplan.changes.frame_fit import fit_frame
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.changes.seen_floors import see_floor
 from scanplan.changes.surveys import RaySight
 from scanplan.changes.verdicts import GONE, MOVED, NEW, NOT_SEEN, OPENED, SAME, SHUT
 from scanplan.project.dataset import pair_surveys
@@ -39,9 +40,7 @@ MOVED_ROOM = PlaneMotion(np.radians(40), 3.0, 0.5)
 
 
 def tie(a, b):
-    free = (a.free, b.motion.inverse() and shapely.transform(b.free, b.motion.inverse().move))
-    faces = (a.faces, b.faces.moved(b.motion.inverse()))
-    return frames.tie_frames(faces, free, ("a", "b"))
+    return frames.tie_frames((see_floor(a.plan), see_floor(b.plan)), ("a", "b"))
 
 
 def compare(a, b):

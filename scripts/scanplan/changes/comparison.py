@@ -8,8 +8,8 @@ from scanplan.changes.curve_shifts import join_curves, measure_curves
 from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M
-from scanplan.changes.seen_faces import list_seen_faces
-from scanplan.changes.surveys import RaySight, Survey, find_free_floor, read_rays
+from scanplan.changes.seen_floors import see_floor
+from scanplan.changes.surveys import RaySight, Survey, read_rays
 from scanplan.changes.verdicts import SIGMAS, Change
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store.registered_scans import RegisteredScans, ScanReader
@@ -63,8 +63,7 @@ def tie_plans(a: FloorPlan, b: FloorPlan) -> FrameTie:
     StageError
         See `frames.tie_frames`.
     """
-    faces = (list_seen_faces(a), list_seen_faces(b))
-    return frames.tie_frames(faces, (find_free_floor(a), find_free_floor(b)), (a.name, b.name))
+    return frames.tie_frames((see_floor(a), see_floor(b)), (a.name, b.name))
 
 
 def place_survey(plan: FloorPlan, scans: Scans, motion: PlaneMotion, tie: FrameTie) -> Survey:

@@ -5,25 +5,25 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
 
+from scanplan.changes.agreement import NEAR_M, Agreement, measure_agreement, place_points
 from scanplan.changes.frame_fit import FrameFit, fit_frame
 from scanplan.changes.frame_votes import list_motions
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.seen_faces import SeenFaces
+from scanplan.changes.seen_floors import SeenFloor
 from scanplan.errors import StageError
 from scanplan.geometry import overlays
-from scanplan.types import FloatArray
 
 _LEAST_SHARE = 0.35  # of the smaller survey's faces: below half of what surveys of one floor have
 _LEAST_MATCHED_M = 4.0  # of faces: of a single room
 _MOST_SIGMA_M = 0.05  # of the motion, at its centre: with more no wall can be told to have moved
 _MOST_SIGMA_RAD = np.radians(0.5)  # likewise: 9 cm at the end of a wing of 10 m
+_LEAST_P = 0.5  # that both are of one building
 _NEARLY = 0.9  # of the score of the best: as different as two surveys of one floor are
 _SAME_M = 0.5  # motions that are nearer are one
 _SAME_RAD = np.radians(5)
 _INSIDE_M = 0.3  # farther inside of free floor no face of it lies
-_STEP_M = 0.25  # between points of faces
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +44,7 @@ class FrameTie:
     others: Sequence[tuple[PlaneMotion, float]]
 
 
-def tie_frames(
-    faces: tuple[SeenFaces, SeenFaces],
-    free: tuple[BaseGeometry, BaseGeometry],
-    names: tuple[str, str],
-) -> FrameTie:
+def tie_frames(floors: tuple[SeenFloor, SeenFloor], names: tuple[str, str]) -> FrameTie:
     """Tie the frames of two surveys.
 
     Of motions that fit nearly as well, that is taken which leaves the frames as they are, if one
@@ -56,10 +52,8 @@ def tie_frames(
 
     Parameters
     ----------
-    faces : (SeenFaces, SeenFaces)
+    floors : (SeenFloor, SeenFloor)
         Of a and b, each in its own frame.
-    free : (shapely geometry, shapely geometry)
-        The floor that rays went over, likewise.
     names : (str, str)
         Of the surveys, for messages.
 
@@ -67,9 +61,9 @@ def tie_frames(
     ------
     StageError
         If no motion lays enough of the walls of one on those of the other, or walls leave one
-        direction free.
+        direction free, or of what both could see so much differs that they are likelier of two.
     """
-    a, b = faces
+    a, b = (floor.faces for floor in floors)
     pair = " and ".join(names)
     least_m = min(float(a.length_m.sum()), float(b.length_m.sum()))
     if least_m < _LEAST_MATCHED_M:
@@ -77,7 +71,7 @@ def tie_frames(
         raise StageError(f"{pair}: cannot be compared, {fault}; survey more of the floor")
     starts = [PlaneMotion(), *list_motions(a, b)]
     fits = [fit_frame(a, b, start) for start in starts]
-    contradicted = [_contradiction_m(a, b, *free, fit.motion) for fit in fits]
+    contradicted = [_contradiction_m(*floors, fit.motion) for fit in fits]
     scores = [
         (_favour_m(fit) - against_m) / least_m
         for fit, against_m in zip(fits, contradicted, strict=True)
@@ -89,6 +83,8 @@ def tie_frames(
     fit = fits[best]
     share = fit.matched_m / least_m
     _check_fit(pair, fit, share)
+    moved = floors[1].moved(fit.motion)
+    _check_agreement(pair, measure_agreement(floors[0], moved))
     others: list[int] = []
     for i in nearly:
         if not any(_is_one(fits[i].motion, fits[j].motion, a) for j in [best, *others]):
@@ -119,6 +115,19 @@ def _check_fit(pair: str, fit: FrameFit, share: float) -> None:
         raise StageError(f"{pair}: do not fit each other, {fault}, {limit}; {remedy}")
 
 
+def _check_agreement(pair: str, found: Agreement) -> None:
+    if found.p_one >= _LEAST_P:
+        return
+    met, walled = found.n_ways
+    fault = (
+        f"of what both could see {found.share:.0%} of the walls agree within {NEAR_M:g} m, and"
+        f" {met} of {met + walled} doors: of one building with {found.p_one:.2f}"
+    )
+    limit = f"{_LEAST_P:g} is needed"
+    remedy = "give two surveys of one floor; of one, mend the map that is bent (close loops)"
+    raise StageError(f"{pair}: do not fit each other, {fault}, {limit}; {remedy}")
+
+
 def _is_one(motion: PlaneMotion, other: PlaneMotion, a: SeenFaces) -> bool:
     """Return whether two motions are one for the floor that a survey shows."""
     middle_m = a.ends_m.mean(axis=(0, 1))
@@ -127,28 +136,14 @@ def _is_one(motion: PlaneMotion, other: PlaneMotion, a: SeenFaces) -> bool:
     return bool(np.hypot(*apart_m) <= _SAME_M and abs(apart_rad) <= _SAME_RAD)
 
 
-def _contradiction_m(
-    a: SeenFaces, b: SeenFaces, free_a: BaseGeometry, free_b: BaseGeometry, motion: PlaneMotion
-) -> float:
+def _contradiction_m(a: SeenFloor, b: SeenFloor, motion: PlaneMotion) -> float:
     """Return what length of the faces of each survey lies well inside of the other's free floor."""
-    return sum(
-        _inside_m(faces, ground)
-        for faces, ground in ((b.moved(motion), free_a), (a.moved(motion.inverse()), free_b))
-    )
+    back = motion.inverse()
+    return _inside_m(b.faces.moved(motion), a) + _inside_m(a.faces.moved(back), b)
 
 
-def _inside_m(faces: SeenFaces, ground: BaseGeometry) -> float:
-    inner = overlays.buffer_shapes(ground, -_INSIDE_M)
+def _inside_m(faces: SeenFaces, floor: SeenFloor) -> float:
+    inner = overlays.buffer_shapes(floor.free, -_INSIDE_M)
     shapely.prepare(inner)
-    count = np.maximum(np.round(faces.length_m / _STEP_M), 1).astype(np.int64)
-    return sum(
-        length_m * float(np.mean(shapely.contains_xy(inner, *_points_m(ends_m, n).T)))
-        for ends_m, length_m, n in zip(
-            faces.ends_m, faces.length_m.tolist(), count.tolist(), strict=True
-        )
-    )
-
-
-def _points_m(ends_m: FloatArray, count: int) -> FloatArray:
-    share = ((np.arange(count) + 0.5) / count)[:, None]
-    return ends_m[0] * (1 - share) + ends_m[1] * share
+    _, points_m, length_m = place_points(faces)
+    return float(length_m[shapely.contains_xy(inner, *points_m.T)].sum())

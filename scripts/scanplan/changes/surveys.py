@@ -6,14 +6,13 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.ray_cells import AT_M, Looks, look_at, place_returns
 from scanplan.changes.scan_plane import ScanPlane, find_plane
 from scanplan.changes.seen_faces import SeenFaces, list_seen_faces
-from scanplan.geometry import overlays
+from scanplan.changes.seen_floors import find_free_floor, place_shape
 from scanplan.geometry.lines import Line
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.ray_set import RaySet, gather_rays
@@ -107,12 +106,7 @@ class Survey:
 
     def place(self, shape: BaseGeometry) -> BaseGeometry:
         """Return a shape of the plan in the common frame."""
-        return shapely.transform(shape, lambda xy_m: np.asarray(self.motion.move(xy_m), np.float64))
-
-
-def find_free_floor(plan: FloorPlan) -> BaseGeometry:
-    """Return the floor that rays went over, in the plan's frame."""
-    return overlays.unite_areas(shapely.from_wkb(np.asarray(plan.free["geometry"], object)))
+        return place_shape(shape, self.motion)
 
 
 def read_rays(
