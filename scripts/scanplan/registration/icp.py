@@ -183,7 +183,7 @@ def _align_spatial(
     motion = se3.nearest_rigid(np.asarray(result.T_target_source))
     return (
         motion,
-        information if settings.method == "gicp" else information / planar_icp.PAIR_SIGMA_M** 2,
+        information if settings.method == "gicp" else information / planar_icp.PAIR_SIGMA_M**2,
     )
 
 
