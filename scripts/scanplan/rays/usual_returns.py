@@ -54,9 +54,9 @@ def count_below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) ->
     row = at.astype(np.int64)
     share = at - row
     last = usual.shape[1] - 2
-    out = np.empty((len(_TILTS), *at.shape))
-    for below, tilt in zip(out, _TILTS, strict=True):
+    out: list[FloatArray] = []
+    for tilt in _TILTS:
         tilted = np.clip(row + tilt, 0, last)
-        below[:] = usual[scan, tilted]
-        below += share * (usual[scan, tilted + 1] - below)
-    return out
+        below = usual[scan, tilted]
+        out.append(below + share * (usual[scan, tilted + 1] - below))
+    return np.array(out)
