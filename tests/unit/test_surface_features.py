@@ -66,7 +66,7 @@ class TestBlocks:
         front, side = wall(1, 0.6, 3, 0.6, NAN), wall(1, 0, 1, 0.6, NAN)
         room = [wall(*of, NAN) for of in ((0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0))]
         found = [look([front, side, *room], number).depth_m for number in range(3)]
-        assert found == [pytest.approx(0.6, abs=0.03)] * 2 + [math.inf]
+        assert found == [pytest.approx(0.6), pytest.approx(0.6), math.inf]
         corners = Surroundings([front, side, *room]).corners
         assert corners.tolist() == [[0, 1]]
 

@@ -124,7 +124,8 @@ class WatchedColumns:
             return self.rays.beams.per_deg_at(self.scan, self.azimuth_rad, self.distance_m)[None]
         rise_m = height_m + self.rays.floor_z_m - self.rays.sensors_m[self.scan, 2, None]
         up_m = self.rays.up[self.scan, 2, None] * rise_m + self.lean * self.distance_m
-        elevation_rad = np.arcsin(up_m / np.hypot(rise_m, self.distance_m))
+        sine = up_m / np.hypot(rise_m, self.distance_m)
+        elevation_rad = np.arcsin(np.clip(sine, -1, 1))
         return usual_returns.count_below(self.rays.usual, self.scan[:, None], elevation_rad)
 
     def expect_returns(self, low_per_deg: FloatArray, high_per_deg: FloatArray) -> FloatArray:

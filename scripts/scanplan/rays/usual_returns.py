@@ -27,7 +27,9 @@ def count_returns_below(azimuth_rad: FloatArray, xyz_m: FloatArray, up: FloatArr
     """
     sector = number_sectors(azimuth_rad)
     seen_deg = max(np.count_nonzero(np.bincount(sector)), 1) * 360 / N_SECTORS
-    elevation_deg = np.rad2deg(np.arcsin(xyz_m @ up / np.linalg.norm(xyz_m, axis=1)))
+    up_m = xyz_m @ up
+    level_m = np.sqrt(np.maximum(np.einsum("ij,ij->i", xyz_m, xyz_m) - up_m**2, 0.0))
+    elevation_deg = np.rad2deg(np.arctan2(up_m, level_m))
     n_rows = 180 * _ROWS_PER_DEG
     row = np.clip((elevation_deg + 90) * _ROWS_PER_DEG, 0, n_rows - 1).astype(np.int64)
     return np.concatenate([[0.0], np.cumsum(np.bincount(row, minlength=n_rows))]) / seen_deg

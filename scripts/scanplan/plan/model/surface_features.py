@@ -64,7 +64,8 @@ class Features:
         How deep the block is that it is a side of: the shorter side of the rectangle around all
         that it is joined to, if most of that was seen from outside alone, the back with it.
     depth_m : float
-        The same of all that it meets at outer corners, one after the other.
+        How deep what it meets at outer corners is, one after the other: the shorter side of the
+        rectangle around that, along the longest of it.
     turned_deg : float
         From the nearest main direction of the building, 0 to 45.
     through_glass : float
@@ -193,7 +194,10 @@ class Surroundings:
         depth_m = np.full(len(self.walls), math.inf)
         for own in self._group(self.corners):
             if len(own) > 1:
-                depth_m[own] = rectangle_sides_m(self._outline(own))[0]
+                longest = max((self.walls[row] for row in own), key=lambda wall: wall.length_m)
+                corners_m = shapely.get_coordinates(self._outline(own))
+                along_m = longest.line.along_m(corners_m)
+                depth_m[own] = min(np.ptp(along_m), np.ptp(longest.line.offset_m(corners_m)))
         return depth_m
 
     @cached_property
