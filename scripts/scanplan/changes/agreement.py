@@ -12,6 +12,7 @@ import shapely
 
 from scanplan.changes.seen_faces import SeenFaces, pair_faces
 from scanplan.changes.seen_floors import SeenFloor
+from scanplan.geometry.intervals import number_within
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _WALL_SHARES = (0.85, 0.55)
@@ -97,10 +98,7 @@ def _find_nearest_m(
     count = np.bincount(row, minlength=len(own.length_m))
     first = np.cumsum(count) - count
     of_pair = np.repeat(np.arange(len(pairs.a)), count[pairs.a])
-    number = np.arange(len(of_pair)) - np.repeat(
-        np.cumsum(count[pairs.a]) - count[pairs.a], count[pairs.a]
-    )
-    point = first[pairs.a][of_pair] + number
+    point = first[pairs.a][of_pair] + number_within(count[pairs.a])
     face = pairs.b[of_pair]
     from_middle_m = points_m[point] - other.ends_m[face].mean(axis=1)
     along_m = np.einsum("nj,nj->n", from_middle_m, other.along[face])
@@ -136,8 +134,5 @@ def _are_walled(ways_m: FloatArray, faces: SeenFaces) -> BoolArray:
 def place_points(faces: SeenFaces) -> tuple[IntArray, FloatArray, FloatArray]:
     """Return points along faces: of which each is, where, and what length it stands for."""
     count = np.maximum(np.round(faces.length_m / _STEP_M), 1).astype(np.int64)
-    row = np.repeat(np.arange(len(count)), count)
-    number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-    share = ((number + 0.5) / count[row])[:, None]
-    points_m = faces.ends_m[row, 0] * (1 - share) + faces.ends_m[row, 1] * share
+    row, points_m = faces.place_points(count)
     return row, points_m, (faces.length_m / count)[row]

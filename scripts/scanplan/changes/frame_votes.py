@@ -103,10 +103,7 @@ def _draw_faces(
 ) -> FloatArray:
     """Return an image of faces, as far as their normals have a direction, blurred by a cell."""
     count = np.maximum(np.ceil(faces.length_m / _STEP_M).astype(np.int64), 1)
-    row = np.repeat(np.arange(len(count)), count)
-    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-    share = ((number + 0.5) / count[row])[:, None]
-    points_m = faces.ends_m[row, 0] * (1 - share) + faces.ends_m[row, 1] * share
+    row, points_m = faces.place_points(count)
     weight = np.maximum(faces.normal @ direction, 0.0)[row] * _STEP_M
     place = (points_m - low_m) / cell_m + 1
     cell = np.floor(place).astype(np.int64)

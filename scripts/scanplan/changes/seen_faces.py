@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from scanplan.changes.plane_motion import PlaneMotion
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
@@ -48,6 +49,12 @@ class SeenFaces:
         """Return them in another frame."""
         turned, moved_m = motion.turn(self.normal), motion.move(self.ends_m)
         return replace(self, ends_m=moved_m, normal=turned)
+
+    def place_points(self, counts: IntArray) -> tuple[IntArray, FloatArray]:
+        """Return of which face each of so many (n,) points along them is, and where, (m, 2)."""
+        row = np.repeat(np.arange(len(counts)), counts)
+        share = ((number_within(counts) + 0.5) / counts[row])[:, None]
+        return row, self.ends_m[row, 0] * (1 - share) + self.ends_m[row, 1] * share
 
     def select(self, rows: BoolArray | IntArray) -> "SeenFaces":
         """Return some of them."""

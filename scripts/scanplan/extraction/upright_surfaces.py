@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scanplan.extraction import normals
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.moments import means_and_covariances
 from scanplan.types import FloatArray
 
@@ -81,7 +82,7 @@ def find_in_space(
     half_m, half_height_m = _half_extent(spread_m2), _half_extent(covariance[2, 2])
     n_parts = np.maximum(np.ceil(2 * half_m / max_length_m), 1).astype(np.int64)
     whole = np.repeat(np.arange(len(n_parts)), n_parts)
-    part = np.arange(len(whole)) - np.repeat(np.cumsum(n_parts) - n_parts, n_parts)
+    part = number_within(n_parts)
     shift_m = ((2 * part + 1) / n_parts.take(whole) - 1) * half_m.take(whole)
     return UprightSurfaces(
         xy_m=(mean_m[:2].take(whole, axis=1) + shift_m * along.take(whole, axis=1)).T,

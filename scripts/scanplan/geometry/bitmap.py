@@ -12,6 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.errors import StageError
 from scanplan.geometry import overlays
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -214,7 +215,7 @@ def _crossings(ends: FloatArray) -> tuple[IntArray, FloatArray]:
         first = np.floor(low) + 1
         count = np.maximum(np.ceil(high) - first, 0).astype(np.int64)
         owner = np.repeat(np.arange(len(ends)), count)
-        step = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
+        step = number_within(count)
         start, end = ends[owner, :, axis].T
         lines.append(owner)
         shares.append((first[owner] + step - start) / (end - start))

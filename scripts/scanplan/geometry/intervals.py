@@ -77,3 +77,12 @@ def solve_range(
     low = np.where(is_level, np.where(is_inside, -np.inf, np.inf), np.minimum(one, other))
     high = np.where(is_level, np.where(is_inside, np.inf, -np.inf), np.maximum(one, other))
     return low, high
+
+
+def number_within(counts: IntArray) -> IntArray:
+    """Return 0, 1 and so on for the members of each group in turn, given how many (n,) each has.
+
+    >>> number_within(np.array([2, 0, 3])).tolist()
+    [0, 1, 0, 1, 2]
+    """
+    return np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)

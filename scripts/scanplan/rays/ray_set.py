@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from scanplan.geometry.intervals import number_within
 from scanplan.rays import azimuth_sectors, beam_spread, levels, usual_returns
 from scanplan.rays.sweep_gaps import find_sweep_gaps
 from scanplan.stage import workers
@@ -224,7 +225,7 @@ class RaySet:
         count = np.maximum(high - low, 0)
         every = count.sum() // most + 1
         count = (count // every).ravel()
-        step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+        step = number_within(count)
         pair = np.tile(np.arange(len(scans)), len(low))
         return np.repeat(low.ravel(), count) + every * step, np.repeat(pair, count)
 

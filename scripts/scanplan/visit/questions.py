@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.lines import left_normals, line_lengths_m
 from scanplan.plan.floorplan import WAYS, FloorPlan, centrelines_m
 from scanplan.plan.tolerances import END_M
@@ -105,7 +106,7 @@ def cut_questions(questions: Sequence[Question]) -> Pieces:
     whole_m = np.bincount(of_line, length_m, len(questions))
     number = np.maximum(np.ceil(length_m / STRETCH_M), 1).astype(np.int64)
     line = np.repeat(np.arange(len(lines_m)), number)
-    step = np.arange(len(line)) - np.repeat(np.cumsum(number) - number, number)
+    step = number_within(number)
     way_m = lines_m[line, 1] - lines_m[line, 0]
     middle_m = lines_m[line, 0] + way_m * ((step + 0.5) / number[line])[:, None]
     left = left_normals(lines_m)[line]

@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration import icp
 from scanplan.registration.drift.submaps import Submap
@@ -193,7 +194,7 @@ def _free_cells(submap: Submap, low_m: FloatArray, shape: tuple[int, ...]) -> Bo
     steps_m = np.arange(0, max(length_m.max() - 3 * _FINE_M, _FINE_M), _FINE_M)
     count = np.searchsorted(steps_m, length_m - 3 * _FINE_M)
     ray = np.repeat(np.arange(len(count)), count)
-    step = np.arange(len(ray)) - np.repeat(np.cumsum(count) - count, count)
+    step = number_within(count)
     share = steps_m[step] / np.maximum(length_m, _FINE_M)[ray]
     # one axis after the other: rows of two numbers take numpy twice as long
     column, row = (

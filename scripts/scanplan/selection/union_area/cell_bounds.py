@@ -14,6 +14,7 @@ are drawn with soft edges.
 import numpy as np
 import shapely
 
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.types import Array, FloatArray, IntArray
 
@@ -182,7 +183,7 @@ def _cut(
     long = np.flatnonzero(low < high)
     n_pieces = (high - low)[long].astype(np.int64) + 1
     edge = np.repeat(long, n_pieces)
-    line = low[edge] + np.arange(len(edge)) - np.repeat(np.cumsum(n_pieces) - n_pieces, n_pieces)
+    line = low[edge] + number_within(n_pieces)
     a, b = start[edge], end[edge]
     step = (b - a) / (b - a)[:, axis, None]
     cut_a, cut_b = (

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 
 from scanplan.geometry import overlays
+from scanplan.geometry.intervals import number_within
 from scanplan.geometry.lines import line_lengths_m
 from scanplan.lab.evaluation.opening_metrics import PARALLEL, unit_directions
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
@@ -73,7 +74,7 @@ def cut_walls(lines_m: FloatArray, chosen: Array) -> tuple[Array, FloatArray, Fl
     whole_m = line_lengths_m(lines_m)[line]
     count = np.maximum(np.ceil(whole_m / _STRETCH_M - 1e-9), 1).astype(int)
     wall = np.repeat(line, count)
-    step = np.arange(len(wall)) - np.repeat(np.cumsum(count) - count, count)
+    step = number_within(count)
     share = ((step + 0.5) / np.repeat(count, count))[:, None]
     middle_m = lines_m[wall, 0] * (1 - share) + lines_m[wall, 1] * share
     return wall, middle_m, np.repeat(whole_m / np.maximum(count, 1), count)
