@@ -126,10 +126,10 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     for name, of_thing in reversed(_OF_TRUTH.items()):
         kind[owner[verdict == name]] = of_thing
     taught = np.flatnonzero(kind >= 0).tolist()
-    of_corners = kind[surroundings.corners]
+    met = kind[surroundings.corners]
+    met = met[(met >= 0).all(axis=1)]
     corners = np.zeros((len(things.KINDS), len(things.KINDS)), np.int64)
-    for pair in of_corners[(of_corners >= 0).all(axis=1)]:
-        np.add.at(corners, (pair, pair[::-1]), 1)
+    np.add.at(corners, (met, met[:, ::-1]), 1)
     rows = [[getattr(features[row], name) for name in things.DENSITIES] for row in taught]
     return Surfaces(
         features=np.array(rows, float).reshape(len(taught), len(things.DENSITIES)),

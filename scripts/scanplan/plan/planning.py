@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
@@ -220,7 +219,7 @@ def make_plan(
         Without any row of faces or walls where nothing is supported enough.
     """
     segments, rays = chosen.segments, chosen.rays
-    up = _stand_plumb(rays) if chosen.up is None else chosen.up
+    up = rays.up if chosen.up is None else chosen.up
     rays = replace(rays, floor_z_m=lintels.settle_floor_z(rays, segments, track_m))
     errors_m = range_bias.estimate_range_bias(
         rays, segments, settings.ranges, settings.reading.band_m, up
@@ -571,11 +570,6 @@ def _settle(surfaces: _Surfaces, spaces: _Spaces, max_door_m: float) -> _Surface
         tops_m=tops_m,
         nearly=[*surfaces.nearly, *(of for _, nearly in settled for of in nearly)],
     )
-
-
-def _stand_plumb(rays: RaySet) -> FloatArray:
-    """Return the axis (s, 3) of each scan's sensor if it stands plumb."""
-    return np.tile((0.0, 0.0, 1.0), (len(rays.scan_ids), 1))
 
 
 def _find_free(rays: RaySet, track_m: FloatArray, width_m: float, max_step_m: float) -> _Free:

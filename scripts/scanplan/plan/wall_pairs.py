@@ -98,8 +98,8 @@ def refit_wall(wall: PlanWall) -> PlanWall:
     fitted = _Sides(list(range(len(wall.members))), wall.members).make()
 
     def move(low_m: float, high_m: float) -> dict[str, float]:
-        along_m = fitted.line.along_m(wall.line.at(np.array([low_m, high_m])))
-        return {"low_m": float(along_m.min()), "high_m": float(along_m.max())}
+        ends_m = wall.line.at(np.array([low_m, high_m]))
+        return dict(zip(("low_m", "high_m"), fitted.reach_m(ends_m), strict=True))
 
     openings, closed = (
         sorted((replace(of, **move(of.low_m, of.high_m)) for of in gaps), key=lambda of: of.low_m)

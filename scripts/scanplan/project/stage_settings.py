@@ -49,14 +49,11 @@ _PLAN: dict[str, Keywords] = {
         "max_angle_deg": 5.0,  # more pairs what lies side by side, less parts short walls' sides
         "offset_m": 0.08,  # all faces of one side lie so near to one line
     },
-    "openings": {
-        "max_closed_m": 2.0
-    },  # behind furniture; a longer pause that no ray tells is not known
+    # behind furniture; of a longer pause that no ray tells nothing is known
+    "openings": {"max_closed_m": 2.0},
     "rooms": {"min_walled": 0.7},  # of the outline, where no sensor was in a room
-    "trust": {
-        "max_sigma_m": _MAX_SIGMA_M,
-        "min_observed": 0.5,
-    },  # half of it inferred is to be verified
+    # half of a wall inferred is to be verified
+    "trust": {"max_sigma_m": _MAX_SIGMA_M, "min_observed": 0.5},
 }
 """What no survey needed another value of, by part of the plan."""
 _THESIS_RANSAC = ("inlier_m", "seed", "model")

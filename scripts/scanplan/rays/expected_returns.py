@@ -9,6 +9,7 @@ lets most through, to where there may be nothing, and mirrors others away.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -88,10 +89,8 @@ class WatchedColumns:
         The azimuth that a column fills.
     is_asked : (v, n) bool
         Of others nothing is expected: it sees them too obliquely, or rays there were left out.
-    lean : (v, n) float64
-        How much the sensor's axis leans towards each column: its level part, along the way there.
-    azimuth_rad : (v, n) float64 or None
-        Towards each column, of planar scans.
+    azimuth_rad : (v, n) float64
+        Towards each column.
     width : int
         As of `SentRays`.
     cell, height_m, is_returned : (k,) int64, float64, bool
@@ -105,8 +104,7 @@ class WatchedColumns:
     distance_m: FloatArray
     column_deg: FloatArray
     is_asked: BoolArray
-    lean: FloatArray
-    azimuth_rad: FloatArray | None
+    azimuth_rad: FloatArray
     width: int
     cell: IntArray
     height_m: FloatArray
@@ -118,15 +116,21 @@ class WatchedColumns:
         For each of the ways in which a sensor may be tilted. Of planar scans all are above the
         floor, and below any height there.
         """
-        if self.azimuth_rad is not None:
+        if self.rays.planar:
             if height_m <= 0:
                 return np.zeros((1, *self.distance_m.shape))
             return self.rays.beams.per_deg_at(self.scan, self.azimuth_rad, self.distance_m)[None]
         rise_m = height_m + self.rays.floor_z_m - self.rays.sensors_m[self.scan, 2, None]
-        up_m = self.rays.up[self.scan, 2, None] * rise_m + self.lean * self.distance_m
+        up_m = self.rays.up[self.scan, 2, None] * rise_m + self._lean * self.distance_m
         sine = up_m / np.hypot(rise_m, self.distance_m)
         elevation_rad = np.arcsin(np.clip(sine, -1, 1))
         return usual_returns.count_below(self.rays.usual, self.scan[:, None], elevation_rad)
+
+    @cached_property
+    def _lean(self) -> FloatArray:
+        """How much the sensor's axis leans towards each column, (v, n): its level part."""
+        way = np.stack([np.cos(self.azimuth_rad), np.sin(self.azimuth_rad)], axis=-1)
+        return np.einsum("vnk,vk->vn", way, self.rays.up[self.scan, :2])
 
     def expect_returns(self, low_per_deg: FloatArray, high_per_deg: FloatArray) -> FloatArray:
         """Return the returns (v, n) to be expected between heights, of `per_deg_below` of both.
@@ -182,8 +186,6 @@ def watch_columns(
         for row, number in enumerate(scan.tolist()):
             for begin_rad, wide_rad in rays.sweep_gaps[number].tolist():
                 is_asked[row] &= (azimuth_rad[row] - begin_rad) % (2 * np.pi) >= wide_rad
-    way = np.stack([np.cos(azimuth_rad), np.sin(azimuth_rad)], axis=-1)
-    lean = np.einsum("vnk,vk->vn", way, rays.up[scan, :2])
     view, along_m = face.view, face.along_m
     is_inside = is_looking.take(view) & (along_m >= low_m) & (along_m < high_m)
     is_inside &= np.abs(along_m - views.sensor_along_m.take(view)) < grazing_m.take(view)
@@ -197,8 +199,7 @@ def watch_columns(
         distance_m=distance_m,
         column_deg=np.rad2deg(column_m * side_m / distance_m**2),
         is_asked=is_asked,
-        lean=lean,
-        azimuth_rad=azimuth_rad if rays.planar else None,
+        azimuth_rad=azimuth_rad,
         # of one beam there are few; as many columns on either side
         width=2 * round(STRETCH_M / column_m) + 1 if rays.planar else _WIDTH,
         cell=row.take(view.take(rows)) * count + np.minimum(column, count - 1),

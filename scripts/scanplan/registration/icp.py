@@ -181,10 +181,8 @@ def _align_spatial(
     order = [3, 4, 5, 0, 1, 2]
     information = np.asarray(result.H)[order][:, order]
     motion = se3.nearest_rigid(np.asarray(result.T_target_source))
-    return (
-        motion,
-        information if settings.method == "gicp" else information / planar_icp.PAIR_SIGMA_M**2,
-    )
+    variance_m2 = 1.0 if settings.method == "gicp" else planar_icp.PAIR_SIGMA_M**2
+    return motion, information / variance_m2
 
 
 def _keep_unobservable(

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting import moved_rooms, moved_walls
 from scanplan.exports.drafting.facades import find_behind, find_facades
@@ -36,8 +37,9 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
       seen through windows;
     - what lies in a thicker wall: its one side once more.
     """
-    is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan)
-    is_left_out |= _find_within(plan) | _find_nibs(plan)
+    floor = overlays.unite_areas(plan.areas)
+    is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan, floor)
+    is_left_out |= _find_within(plan) | _find_nibs(plan, floor)
     is_left_out &= ~plan.thick & (np.asarray(plan.walls["corrected"], str) == "")
     is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
     is_wide |= np.asarray(plan.openings["corrected"], str) != ""
@@ -62,14 +64,13 @@ def find_nowhere(plan: FloorPlan) -> BoolArray:
     return is_bare & np.asarray(openings["room_a"] == openings["room_b"], bool)
 
 
-def _find_bounding(plan: FloorPlan) -> BoolArray:
+def _find_bounding(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
     """Return which walls (n,) bound rooms along half of their length or more.
 
     Less ways from a room into itself: these part nothing.
     """
     lines_m = centrelines_m(plan.walls)
-    outlines = overlays.unite_areas(plan.areas).boundary
-    near = overlays.buffer_shapes(outlines, 2 * moved_rooms.ON_M)
+    near = overlays.buffer_shapes(floor.boundary, 2 * moved_rooms.ON_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
     bounding_m = shapely.length(along) - _sum_nowhere(plan)
     return bounding_m >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2
@@ -84,7 +85,7 @@ def _find_pieces(plan: FloorPlan) -> BoolArray:
     return (is_piece | unlikely) & ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
 
 
-def _find_nibs(plan: FloorPlan) -> BoolArray:
+def _find_nibs(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
     """Return which walls (n,) are no longer than what both ends err by, and one ends in a room.
 
     The room's outline goes around these, so that they bound it on all sides.
@@ -92,7 +93,7 @@ def _find_nibs(plan: FloorPlan) -> BoolArray:
     lines_m = centrelines_m(plan.walls)
     is_short = np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) < 2 * END_M
     around = overlays.buffer_shapes(shapely.points(lines_m[is_short].reshape(-1, 2)), END_M)
-    within_m2 = shapely.area(overlays.intersect_areas(around, overlays.unite_areas(plan.areas)))
+    within_m2 = shapely.area(overlays.intersect_areas(around, floor))
     ends_free = (within_m2 > _FREE * shapely.area(around)).reshape(-1, 2)
     is_nib = np.zeros(len(lines_m), bool)
     is_nib[is_short] = ends_free.any(axis=1)

@@ -195,7 +195,7 @@ class Surroundings:
         for own in self._group(self.corners):
             if len(own) > 1:
                 longest = max((self.walls[row] for row in own), key=lambda wall: wall.length_m)
-                corners_m = shapely.get_coordinates(self._outline(own))
+                corners_m = np.concatenate([self.walls[row].ends for row in own])
                 along_m = longest.line.along_m(corners_m)
                 depth_m[own] = min(np.ptp(along_m), np.ptp(longest.line.offset_m(corners_m)))
         return depth_m
@@ -211,7 +211,7 @@ class Surroundings:
         length_m = np.array([wall.length_m for wall in self.walls])
         block_m = np.full(len(self.walls), math.inf)
         for own in self._group(joined.T):
-            outline = self._outline(own)
+            outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
             middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
             off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
             is_outer = is_single[own] & (off_m > 0)
@@ -229,9 +229,6 @@ class Surroundings:
         links = coo_array((np.ones(len(pairs)), pairs.T), shape=(count, count))
         _, group = connected_components(links, directed=False)
         return np.split(np.argsort(group, kind="stable"), np.bincount(group).cumsum()[:-1])
-
-    def _outline(self, own: IntArray) -> shapely.MultiPoint:
-        return shapely.MultiPoint(np.concatenate([self.walls[row].ends for row in own]))
 
     def _near(self, number: int, place: shapely.Geometry, within_m: float) -> list[int]:
         near = np.sort(self._tree.query(place, predicate="dwithin", distance=within_m))
