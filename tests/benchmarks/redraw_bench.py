@@ -144,7 +144,7 @@ def _count_askew(lines_m: FloatArray, main_deg: float) -> int:
 
 def _count_covered(sheet: Sheet) -> int:
     """Return how many pairs of openings of one way cover one another; corners are none."""
-    symbols = [symbol for symbol in sheet.symbols if symbol.kind != "swing"]
+    symbols = [symbol for symbol in sheet.symbols if symbol.kind not in ("swing", "recess")]
     grounds = [
         shapely.LineString(symbol.ends_m).buffer(symbol.thickness_m / 2, cap_style="flat")
         for symbol in symbols

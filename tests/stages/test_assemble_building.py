@@ -147,8 +147,9 @@ def test_each_storey_has_a_layout_with_its_name_that_shows_it_alone(house):
         assert {layer[:2] for layer in port.frozen_layers} == {f"{3 - number}-"}
         shown = port.get_transformation_matrix().transform(place) - port.dxf.center
         sides.append((round(shown.x, 3), round(shown.y, 3)))
-    # of both the corner is 3.6 m and 1.5 m off the middle, 1:50; they lie as in the building
-    assert sides == [(72.0, 30.0), (-30.0, 72.0)]
+    # of both the corner is 3.6 m and 1.5 m off the middle, 1:50; they lie as in the building, a
+    # chain of dimensions more, 8 mm, left and below
+    assert sides == [(72.0 + 4, 30.0 + 4), (-30.0 + 4, 72.0 + 4)]
 
 
 def test_evidence_and_dimensions_of_storeys_are_those_of_their_own_drawings(house, floors):
@@ -178,9 +179,10 @@ def test_a_set_of_sheets_has_a_page_of_each_storey(house):
 def test_sheets_of_a_set_have_one_scale_and_lie_alike():
     small, large = floorplan_making.plan(), floorplan_making.bare([(0, 0, 60, 40, -1)])
     facts = [SheetFacts(storey=name) for name in ("Ground", "First")]
-    for turn, expected in ((True, 30.0), (False, 0.0)):
+    # A3 holds the large one at 1:200 where it lies along the sheet, A2 at 1:150 where it does not
+    for turn, expected, scale in ((True, 30.0, 150), (False, 0.0, 200)):
         sheets = compose_sheets([small, large], facts, [np.radians(-30), 0.0], turn=turn)
-        assert sheets[0].page.scale == sheets[1].page.scale == 150
+        assert sheets[0].page.scale == sheets[1].page.scale == scale
         own = [sheet.page.turn_deg for sheet in sheets]
         assert own == pytest.approx([expected - 30, expected])
     loose = compose_sheets([small, large], facts, [0.0, None], turn=True)[1]

@@ -1,5 +1,7 @@
 """How doors open on the regular drawing, by leaves that were seen standing open."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -12,6 +14,7 @@ from scanplan.exports.sheet.symbols import symbol_paths
 
 # a wall of 0.2 m along y = 0, a door from x = 1 to 2
 DOOR = Symbol("door", np.array([[1.0, 0.0], [2.0, 0.0]]), 0.2, "door-0", "")
+WALL = shapely.union(shapely.box(0, -0.1, 1, 0.1), shapely.box(2, -0.1, 3, 0.1))
 
 
 def leaf(x, y, to_x, to_y):
@@ -29,7 +32,7 @@ def leaf(x, y, to_x, to_y):
     ],
 )
 def test_a_door_swings_as_its_leaf_stood(seen, tip):
-    swing = draw_swing(DOOR, seen)
+    swing = draw_swing(DOOR, seen, WALL)
     assert swing.kind == "swing" and swing.width_m == pytest.approx(1)
     opened, way = (flatten(path) for path in symbol_paths(swing))
     # from the face of the wall at the jamb
@@ -43,11 +46,11 @@ def test_a_door_swings_as_its_leaf_stood(seen, tip):
 
 
 def test_a_wide_door_has_two_leaves():
-    wide = Symbol("door", np.array([[1.0, 0.0], [3.0, 0.0]]), 0.2, "door-0", "")
-    swing = draw_swing(wide, leaf(3, 0, 3, 0.95))
+    wide = Symbol("door", np.array([[2.0, 0.0], [4.0, 0.0]]), 0.2, "door-0", "")
+    swing = draw_swing(wide, leaf(4, 0, 4, 0.95), shapely.Polygon())
     assert swing.block == "SWING-2"
     tips = [flatten(path)[-1] for path in symbol_paths(swing)][::2]
-    np.testing.assert_allclose(tips, [[1, 1.1], [3, 1.1]], atol=1e-9)
+    np.testing.assert_allclose(tips, [[2, 1.1], [4, 1.1]], atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -60,7 +63,33 @@ def test_a_wide_door_has_two_leaves():
     ],
 )
 def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
-    assert draw_swing(DOOR, seen) is DOOR
+    assert draw_swing(DOOR, seen, WALL) is DOOR
+
+
+@pytest.mark.parametrize(
+    ("in_the_way", "tip"),
+    [
+        (shapely.box(1.3, 0.95, 1.6, 2), (2 - 0.5**0.5, 0.1 + 0.5**0.5)),
+        # a frame is: 0.1 m of the leaf
+        (shapely.box(1.95, 0.6, 2.1, 0.69), (2, 1.1)),
+    ],
+)
+def test_a_door_is_drawn_ajar_where_a_wall_stands_in_its_way(in_the_way, tip):
+    walls = shapely.union(WALL, in_the_way)
+    swing = draw_swing(DOOR, leaf(2, 0.05, 2, 0.95), walls)
+    assert swing.kind == "swing" and swing.is_hinged
+    opened, way = (flatten(path) for path in symbol_paths(swing))
+    np.testing.assert_allclose(opened, [(2, 0.1), tip], atol=1e-9)
+    np.testing.assert_allclose(way[[0, -1]], [tip, (1, 0.1)], atol=1e-9)
+    np.testing.assert_allclose(np.hypot(*(way - opened[0]).T), 1, atol=1e-9)
+
+
+def test_a_leaf_that_goes_through_a_wall_hangs_in_no_door_but_one_a_person_has_seen():
+    walls = shapely.union(WALL, shapely.box(0.9, 0.4, 2.1, 0.6))
+    seen = leaf(2, 0.05, 2, 0.95)
+    assert draw_swing(DOOR, seen, walls) is DOOR
+    corrected = replace(DOOR, facts={"corrected": "swing"})
+    assert draw_swing(corrected, seen, walls).block == "SWING-RIGHT"
 
 
 @pytest.mark.parametrize(

@@ -17,12 +17,13 @@ from scanplan.exports.sheet.composition import compose_sheet
 NONE = dict.fromkeys(redraw_bench.LIST, 0)
 
 
-def counted(*lines, openings=floorplan_making.OPENINGS, pieces=(), kind="leaf"):
-    """The counts of the toy plan with more walls of 0.1 m, openings or furniture."""
+def counted(*lines, openings=floorplan_making.OPENINGS, pieces=(), kind="leaf", said=""):
+    """The counts of the toy plan with more walls of 0.1 m, openings, furniture or corrections."""
     walls = [*floorplan_making.WALLS, *((line_m, 0.1, -1, -1, "observed") for line_m in lines)]
+    made = floorplan_making.openings(openings, walls)
     plan = floorplan_making.plan(
         walls=floorplan_making.walls(walls),
-        openings=floorplan_making.openings(openings, walls),
+        openings=made | {"corrected": np.full(len(openings), said, object)},
         furniture=floorplan_making.furniture(list(pieces), kind),
     )
     return redraw_bench.count_redrawn(plan, compose_sheet(plan))
@@ -59,4 +60,6 @@ def test_openings_on_one_another_are_counted_and_such_at_a_corner_are_not():
 def test_a_door_that_swings_through_a_wall_is_counted():
     leaf = shapely.box(4.05, 0.98, 4.95, 1.02)
     assert counted(pieces=[leaf]) == NONE
-    assert counted((4.5, 0.0, 4.5, 1.8), pieces=[leaf])["swing"] == 1
+    in_the_way = (4.5, 0.0, 4.5, 1.8)
+    assert counted(in_the_way, pieces=[leaf])["swing"] == 0
+    assert counted(in_the_way, pieces=[leaf], said="swing")["swing"] == 1

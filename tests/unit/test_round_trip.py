@@ -129,6 +129,33 @@ def test_a_regular_model_and_its_drawing_have_the_same_openings(surveyed, model_
         assert across < 1e-4, key
 
 
+def test_a_recess_is_in_the_drawing_as_in_the_model(model_of, drawing_of):
+    # a gap of the east wall, and a face 0.2 m behind it
+    gap = ((7.1, 1.0, 7.1, 2.2), 1, "gap", 0.0, 2.5, 1, -1)
+    back = ((7.3, 1.0, 7.3, 2.2), np.nan, 0, -1, "observed")
+    of = plan(walls=walls([*WALLS, back]), openings=openings([*OPENINGS, gap]))
+    catalogue = {**CATALOGUE, "facade_m": 0.3}
+    regular, drafted = draft_plan(of, make_draft_settings(0.05, catalogue))
+    modelled = model_of(regular, catalogue)["opening", 3]
+    drawn = drawing_of(compose_presentation(of, regular, drafted))["opening", 3]
+    assert drawn.facts["kind"] == modelled.facts["kind"] == "gap"
+    assert np.sort(drawn.line_m, 0) == pytest.approx(np.sort(modelled.line_m, 0), abs=1e-4)
+
+
+def test_a_door_that_is_drawn_ajar_opens_to_its_side(model_of, drawing_of):
+    # the leaf stands in the east, where a wall of 0.1 m ends in the way of its arc
+    leaf = furniture([LEAVES[1]])
+    leaf["kind"][:] = "leaf"
+    pier = ((4.7, 1.2, 5.6, 1.2), 0.2, -1, -1, "observed")
+    of = plan(walls=walls([*WALLS, pier]), furniture=leaf, floor_z_m=0.0, ceiling_z_m=2.5)
+    sheet = compose_sheet(of)
+    assert [symbol.block for symbol in sheet.symbols if symbol.is_hinged] == ["SWING-RIGHT-45"]
+    regular, _ = draft_plan(of, make_draft_settings(0.05, CATALOGUE))
+    for elements in (drawing_of(sheet), model_of(regular, CATALOGUE)):
+        door = elements["opening", 1].facts
+        assert door["kind"] == "door" and door["opens_m"][0] > 4.5
+
+
 def test_walls_are_read_in_their_middle_whatever_their_corners(surveyed, model_of, drawing_of):
     # a spur of a mitre is no part of a wall's width, and neither is a hole as high as it is
     for elements in (model_of(surveyed), drawing_of(compose_sheet(surveyed))):

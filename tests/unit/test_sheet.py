@@ -143,20 +143,20 @@ def test_paper_and_plan_are_each_other_s_inverse(sheet):
 @pytest.mark.parametrize(
     ("extent_m", "name", "upright", "scale"),
     [
-        # A4 upright: 180 x 277 in the frame, less 66 of tables and 24 on each side: 132 x 163;
-        # A3 has tables beside the title block, 38 high: 390 x 277 less these leave 342 x 191
-        ((6.6, 8.1), "A4", True, 50),
-        ((17.1, 9.5), "A3", False, 50),
-        # too long for that; A3 at 1:75 would be 44 % full, A4 lying, with 219 x 104, is 72 %
-        ((17.2, 9.5), "A4", False, 100),
-        # upright, A3 has 219 x 314
-        ((30, 30), "A3", True, 150),
-        # 46 % of A3, but A4 holds it at 1:500 only
-        ((40, 30), "A3", False, 200),
-        # A2: 516 x 314, of which it takes 57 %
-        ((76.3, 48.8), "A2", False, 200),
-        # A0: 1111 x 735
-        ((150, 100), "A0", False, 150),
+        # A4 upright: 180 x 277 in the frame, less 66 of tables and 36 around: 144 x 175;
+        # A3 has tables beside the title block, 38 high: 390 x 277 less these leave 354 x 203
+        ((7.1, 8.7), "A4", True, 50),
+        ((17.7, 10.1), "A3", False, 50),
+        # too long for that; A3 at 1:75 would be 47 % full, A4 lying is 73 %
+        ((17.8, 9.5), "A4", False, 100),
+        # upright, A3 has 231 x 326
+        ((31, 31), "A3", True, 150),
+        # 45 % of A3, but A4 holds it at 1:250 only
+        ((54, 20), "A3", False, 200),
+        # A2: 528 x 326, and upright 354 x 500
+        ((80, 50), "A2", False, 200),
+        # A1: 775 x 500, and upright 528 x 747; A0: 1123 x 747
+        ((156, 100), "A0", False, 150),
         ((900, 400), "A0", False, 1000),
     ],
 )
@@ -167,7 +167,7 @@ def test_the_sheet_is_small_and_well_filled_at_a_scale_to_read(extent_m, name, u
 
 
 def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
-    # 277 mm x 181 at 1:75: on A3 below 14 rows of tables 169 mm are left, above 9 of them 189
+    # 277 mm x 181 at 1:75: on A3 above 15 rows of tables 179 mm are left, above 9 of them 203
     low_m, high_m, blocks = np.zeros(2), np.array([20.8, 13.6]), [6, 8, 8, 15]
     page = paper.choose_page(low_m, high_m, 0.0, blocks)
     assert (page.name, page.scale, page.rows, page.is_beside) == ("A3", 75, 9, True)
@@ -201,7 +201,7 @@ def test_no_column_stays_empty():
 
 def test_a_plan_beyond_all_usual_scales_fills_the_largest_sheet():
     page = paper.choose_page(np.zeros(2), np.array([900_000, 1]), 0.0, [6])
-    assert page.name == "A0" and page.scale == pytest.approx(900_000_000 / (1159 - 48), abs=1)
+    assert page.name == "A0" and page.scale == pytest.approx(900_000_000 / (1159 - 36), abs=1)
 
 
 def test_tables_break_only_where_no_slot_holds_them():
@@ -231,7 +231,7 @@ def test_no_row_of_a_table_stands_alone_unless_the_scale_would_be_smaller(n_room
         if paper.fill_slots(paper.find_slots(page.inner_mm, rows), blocks) is not None
     )
     _, y0, _, y1 = replace(page, rows=rows).drawing_mm
-    full_m = (y1 - y0 - 2 * Paper.AROUND) / page.mm_per_m
+    full_m = (y1 - y0 - Paper.AROUND[1] - Paper.AROUND[3]) / page.mm_per_m
     assert chosen(full_m - 0.01).name == page.name
 
 
@@ -256,9 +256,9 @@ def test_a_plan_is_turned_unless_it_is_not_to_be():
 @pytest.mark.parametrize(
     ("size_m", "turn_deg", "scale"),
     [
-        # at 1:75 it is 270 mm by 203 mm: A3 has about 340 by 190 for it lying, 220 by 310 upright
-        ((20.0, 15.0), 90, 75),
-        ((15.0, 20.0), 0, 75),
+        # at 1:75 it is 270 mm by 209 mm: A3 has about 350 by 200 for it lying, 230 by 320 upright
+        ((20.0, 15.5), 90, 75),
+        ((15.5, 20.0), 0, 75),
         # either way at one scale
         ((10.0, 9.0), 0, 50),
     ],

@@ -24,6 +24,7 @@ from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
 from scanplan.exports.dxf_document import APPLICATION, STAMP, WALL_FACT
+from scanplan.exports.sheet.symbols import AJAR
 from scanplan.project import user_file
 from scanplan.types import FilePath, FloatArray
 
@@ -87,7 +88,7 @@ def _list_elements(document: Document, per_unit_m: float) -> Iterator[Element]:
         if isinstance(entity, Insert):
             if entity.dxf.name.startswith(STAMP):
                 yield _read_stamp(document, entity)
-            elif "opening" in facts or entity.dxf.name in KINDS:
+            elif "opening" in facts or entity.dxf.name.removesuffix(AJAR) in KINDS:
                 yield _read_opening(entity, facts, per_unit_m)
         elif isinstance(entity, LWPolyline):
             corners_m = np.array([c[:2] for c in entity.get_points("xyb")]) * per_unit_m
@@ -122,7 +123,7 @@ def read_facts(entity: Any) -> dict[str, Any]:
 
 
 def _read_opening(insert: Insert, facts: dict[str, Any], per_unit_m: float) -> Element:
-    name = insert.dxf.name
+    name = insert.dxf.name.removesuffix(AJAR)
     start_m = np.array([insert.dxf.insert.x, insert.dxf.insert.y]) * per_unit_m
     turn = math.radians(insert.dxf.rotation)
     direction = np.array([math.cos(turn), math.sin(turn)])

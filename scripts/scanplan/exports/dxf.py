@@ -19,7 +19,7 @@ from scanplan.exports import dxf_document
 from scanplan.exports.dxf_document import APPLICATION, Scale
 from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.exports.sheet.composition import Sheet, surround_symbol
-from scanplan.exports.sheet.lettering import clean_text
+from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Facts, Mark, Stamp, Symbol, Word
 from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import INK, LAYERS, STYLES, Letters, Paper, doubt_layer
@@ -219,10 +219,13 @@ def draw_layout(document: Drawing, name: str, sheet: Sheet, scale: Scale) -> Vie
         else:
             _add_text(layout, word, 1.0, 1.0)
     x0, y0, x1, y1 = page.drawing_mm
+    middle_mm = np.array([x0 + x1, y0 + y1]) / 2
+    # a view is turned about the origin, and its centre is told in what it shows
+    middle_m = page.to_plan(middle_mm) @ rotation(page.turn_deg).T
     port = layout.add_viewport(
-        center=((x0 + x1) / 2, (y0 + y1) / 2),
+        center=tuple(middle_mm.tolist()),
         size=(x1 - x0, y1 - y0),
-        view_center_point=tuple((page.middle_m * scale.per_m).tolist()),
+        view_center_point=tuple((middle_m * scale.per_m).tolist()),
         view_height=(y1 - y0) * scale.per_mm,
         status=2,
         dxfattribs={"layer": "A-ANNO-NPLT"},

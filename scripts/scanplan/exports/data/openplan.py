@@ -178,7 +178,7 @@ def _say_swing(plan: FloorPlan, row: int, item: Item, swing: Any) -> Item:
     is_along_host = bool(direction @ (host_m[1] - host_m[0]) > 0)
     # of its own line: hinged at its start if opened to the left with the one block, else the other
     is_to_left = not swing.is_reversed
-    is_at_start = (swing.block != "SWING-RIGHT") == is_to_left
+    is_at_start = (swing.way != "SWING-RIGHT") == is_to_left
     is_at_host_end = is_at_start != is_along_host
     return {
         "swingDirection": "left" if is_at_host_end else "right",

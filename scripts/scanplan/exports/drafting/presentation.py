@@ -19,6 +19,7 @@ from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
+from scanplan.exports.sheet.symbols import choose_block
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import SAGITTA_M
@@ -139,11 +140,17 @@ def _find_backs(plan: FloorPlan) -> Array:
 
 
 def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
-    """Yield openings, but what is in no wall and leads from a room into itself, and recesses."""
+    """Yield openings, but what is in no wall and leads from a room into itself.
+
+    Recesses have symbols that CAD programs know, and that are not seen: walls show them.
+    """
+    is_none = find_nowhere(plan) & (plan.hosts < 0)
     # a hole in a wall is one, whatever is behind it
-    is_none = (find_nowhere(plan) & (plan.hosts < 0)) | ~shapely.is_empty(_find_backs(plan))
+    is_recess = ~shapely.is_empty(_find_backs(plan))
     for row, symbol in enumerate(list_symbols(plan)):
-        if not is_none[row]:
+        if is_recess[row]:
+            yield replace(symbol, kind="recess", block=choose_block(symbol))
+        elif not is_none[row]:
             yield replace(symbol, kind=_PLAIN.get(symbol.kind, symbol.kind))
 
 

@@ -109,7 +109,7 @@ def _add_opening(
     if model.is_editable:
         attributes["PredefinedType"] = "DOOR" if kind == "door" else "WINDOW"
     if swing is not None:
-        attributes |= _state_operation(_OPERATIONS[swing.block])
+        attributes |= _state_operation(_OPERATIONS[swing.way])
     thickness_m = float(plan.openings["thickness_m"][row])
     if np.isnan(thickness_m):
         thickness_m = plan.assumed_thickness_m

@@ -99,11 +99,12 @@ def lay_out(
     blocks = [6, len(_list_legend(shown, marks, is_about=True)), len(shown.notes), len(plan.areas)]
     along_deg = -plan.main_direction_deg
     turns_deg = (along_deg, along_deg + 90) if turn_deg is None else (turn_deg,)
-    ends_m = [symbol.ends_m for symbol in symbols]
-    around_mm = Paper.AROUND if shown.is_dimensioned else Paper.MARGIN
+    # doors that swing out put the chain before them farther off
+    paths_m = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
+    around_mm = Paper.AROUND if shown.is_dimensioned else Paper.BARE
     pages = [
         choose_page(
-            *_extent(marks, ends_m, turn),
+            *_extent(marks, paths_m, turn),
             turn,
             blocks,
             least_scale,
@@ -116,11 +117,7 @@ def lay_out(
     page = min(
         pages, key=lambda of: (not of.is_handy and of.area_mm2 > pages[0].area_mm2, of.scale)
     )
-    turn_deg = page.turn_deg
     page = replace(page, locale=facts.locale)
-    # doors that swing out put the chain before them farther off: room on the other side goes there
-    swings = [flatten(path) for symbol in symbols for path in symbol_paths(symbol)]
-    page = replace(page, middle_m=np.mean(_extent(marks, swings, turn_deg), axis=0))
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
     marks += content.draw_corrections(plan, _apart_m(page))

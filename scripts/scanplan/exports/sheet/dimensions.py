@@ -238,7 +238,8 @@ def _draw_chain(
         length_mm = line[1, 0] - line[0, 0]
         is_about = not about.isdisjoint((start[0], end[0]))
         words = _state_length(page, length_mm, is_about=is_about)
-        candidates = _beside_line(line @ turn, words)
+        # beyond the chain, as extension lines are before it
+        candidates = _beside_line(line @ turn, words, beyond=np.array([0.0, -1.0]) @ turn)
         chosen = space.place(candidates)
         if chosen is None:
             continue
@@ -249,8 +250,13 @@ def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:
     return f"{'~' if is_about else ''}{page.locale.length(length_mm / page.mm_per_m)}"
 
 
-def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Candidate]:
-    """Yield places for a text above and below the middle of a line, and farther away."""
+def _beside_line(
+    line: FloatArray, text: str, base: float = 0.0, beyond: FloatArray | None = None
+) -> Iterator[Candidate]:
+    """Yield places for a text above and below the middle of a line, and farther away.
+
+    Above first, but farther away in a direction (2,) where one is given.
+    """
     along, turn_deg = read_along(line)
     above = np.array([-along[1], along[0]])
     middle = line.mean(axis=0)
@@ -258,7 +264,8 @@ def _beside_line(line: FloatArray, text: str, base: float = 0.0) -> Iterator[Can
     length_mm = float(np.hypot(*(line[1] - line[0])))
     # what is wider than its line would lie on the strokes at the line's ends
     near = 0 if measure_width_mm(text, Letters.SMALL) <= length_mm - Paper.TICK else 4
-    for cost, away in ((near, 1.0), (1 + near, -1.0), (3, 2.6), (4, -2.6)):
+    far = 2.6 if beyond is None or above @ beyond > 0 else -2.6
+    for cost, away in ((near, 1.0), (1 + near, -1.0), (3, far), (4, -far)):
         offset = away * 0.95 * Letters.SMALL
         place = middle + offset * above
         word = Word("dimension", text, place, Letters.SMALL, turn_deg)

@@ -9,7 +9,7 @@ import shapely
 from scanplan.exports.sheet.content import draw_furniture, facts_of, is_doubtful
 from scanplan.exports.sheet.leaves import draw_swing, find_leaves
 from scanplan.exports.sheet.marks import Mark, Symbol, flatten
-from scanplan.exports.sheet.symbols import symbol_paths
+from scanplan.exports.sheet.symbols import AJAR, symbol_paths
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
@@ -28,6 +28,8 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
     """
     left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
     doubtful, leaves = is_doubtful(plan.openings), find_leaves(plan.furniture)
+    known = overlays.subtract_areas(overlays.unite_areas(plan.known_bodies), plan.all_gaps)
+    walls = overlays.unite_areas([known, plan.assumed])
     symbols: list[Symbol] = []
     lines_m = floorplan.centrelines_m(plan.openings)
     lefts, of_walls = left_normals(lines_m), left_normals(floorplan.centrelines_m(plan.walls))
@@ -52,7 +54,7 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
             facts,
             bool(doubtful[row]),
         )
-        symbols.append(draw_swing(symbol, leaves) if kind == "door" else symbol)
+        symbols.append(draw_swing(symbol, leaves, walls) if kind == "door" else symbol)
     return symbols
 
 
@@ -95,6 +97,11 @@ class Swing:
 
     block: str
     is_reversed: bool
+
+    @property
+    def way(self) -> str:
+        """Its block, however far the leaf is drawn open."""
+        return self.block.removesuffix(AJAR)
 
 
 def find_swings(plan: FloorPlan) -> dict[int, Swing]:

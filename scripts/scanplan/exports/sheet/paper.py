@@ -27,7 +27,7 @@ _SMALL = ("A3", "A4")
 _USUAL = (50, 75, 100, 125, 150, 200, 250)
 _SCALES = (*_USUAL, *(m * 10**e for e in range(2, 5) for m in (5, 10, 20)), 500_000)
 _READABLE = 200  # a room of 3 m is 15 mm wide: a name in the smallest letters goes into it
-_ENOUGH = 0.55  # of the room for a plan: less looks lost, more is rare between two scales
+_ENOUGH = 0.55  # of what lies above the tables: less looks lost, more is rare between two scales
 TITLE_ROWS = 9  # of the title block
 
 
@@ -60,10 +60,10 @@ class Page:
         High is what lies below the plan, in `Paper.ROW`.
     turn_deg : float
         The plan is turned by, counterclockwise.
-    middle_m : (2,) float
+    middle_m, extent_m : (2,) float
         Of the plan, in its turned frame.
-    around_mm : float
-        Left free around the plan.
+    around_mm : (float, float, float, float)
+        Left free around the plan: left, below, right, above.
     locale : Locale
         How it is written.
     is_beside : bool
@@ -76,7 +76,8 @@ class Page:
     rows: int
     turn_deg: float
     middle_m: FloatArray
-    around_mm: float = Paper.AROUND
+    extent_m: FloatArray
+    around_mm: tuple[float, float, float, float] = Paper.AROUND
     locale: Locale = ENGLISH
     is_beside: bool = False
 
@@ -103,6 +104,31 @@ class Page:
         aside = (Paper.COLUMN + Paper.ROW / 2) * self.is_beside
         return x0, y0 + self.rows * Paper.ROW + Paper.ROW / 2, x1 - aside, y1
 
+    @property
+    def room_mm(self) -> tuple[float, float, float, float]:
+        """The part of `drawing_mm` that the plan itself may take."""
+        x0, y0, x1, y1 = self.drawing_mm
+        left, below, right, above = self.around_mm
+        return x0 + left, y0 + below, x1 - right, y1 - above
+
+    @property
+    def free_mm(self) -> FloatArray:
+        """Width and height of the room for a plan."""
+        x0, y0, x1, y1 = self.room_mm
+        return np.array([x1 - x0, y1 - y0])
+
+    @property
+    def filled(self) -> float:
+        """How much of what lies above the tables a plan takes, with what is left free around it."""
+        x0, y0, x1, y1 = self.drawing_mm
+        whole_mm = np.array([x1 - x0, y1 - y0])
+        return float(np.prod((self.extent_m * self.mm_per_m + whole_mm - self.free_mm) / whole_mm))
+
+    @property
+    def is_filled(self) -> bool:
+        """Whether a plan takes enough of its sheet."""
+        return self.filled >= _ENOUGH
+
     @cached_property
     def mm_per_m(self) -> float:
         """Millimetres on paper for a metre."""
@@ -110,7 +136,7 @@ class Page:
 
     @cached_property
     def _origin_mm(self) -> FloatArray:
-        x0, y0, x1, y1 = self.drawing_mm
+        x0, y0, x1, y1 = self.room_mm
         return np.array([(x0 + x1) / 2, (y0 + y1) / 2]) - self.mm_per_m * self.middle_m
 
     def to_paper(self, xy_m: FloatArray) -> FloatArray:
@@ -175,16 +201,16 @@ def choose_page(
     least_scale: int = 1,
     *,
     names: Sequence[str] = tuple(SIZES_MM),
-    around_mm: float = Paper.AROUND,
+    around_mm: tuple[float, float, float, float] = Paper.AROUND,
 ) -> Page:
     """Choose the sheet and the scale for a plan.
 
     Every sheet, lying or upright, with tables below the plan alone or beside it, too, has the
     largest of the usual scales at which it holds the plan.
-    Of A3 and A4 the first is taken whose room the plan fills well enough, else that which it fills
-    best. Where rooms would be too small on these for words to go into them, the smallest sheet is
-    taken on which they are not, and ever smaller scales where they are on all. Tables are broken
-    off a row or two alone only where the scale would otherwise be smaller.
+    Of A3 and A4 the first is taken that the plan fills well enough, else that which it fills best.
+    Where rooms would be too small on these for words to go into them, the smallest sheet is taken
+    on which they are not, and ever smaller scales where they are on all. Tables are broken off a
+    row or two alone only where the scale would otherwise be smaller.
 
     Parameters
     ----------
@@ -196,8 +222,8 @@ def choose_page(
         Scales with a lesser denominator are not taken.
     names : sequence of str
         Of the sheets that may be taken, in the order of preference.
-    around_mm : float
-        Left free around the plan.
+    around_mm : (float, float, float, float)
+        See `Page`.
 
     Raises
     ------
@@ -207,28 +233,26 @@ def choose_page(
     extent_m = np.asarray(high_m, float) - low_m
     middle_m = (np.asarray(high_m, float) + low_m) / 2
     scales = [scale for scale in _SCALES if scale >= least_scale]
-    empty = Page("", (0.0, 0.0), 0, 0, turn_deg, middle_m, around_mm)
-    fitting = (_fit_sheet(replace(empty, name=n), scales, extent_m, blocks) for n in names)
+    empty = Page("", (0.0, 0.0), 0, 0, turn_deg, middle_m, extent_m, around_mm)
+    fitting = (_fit_sheet(replace(empty, name=n), scales, blocks) for n in names)
     pages = [page for page in fitting if page is not None]
     for readable in (_READABLE, *scales):
         found = [page for page in pages if page.scale <= readable]
         small = [page for page in found if page.is_handy]
         if found and not small:
             return found[0]
-        good = [page for page in small if _fills(page, extent_m) >= _ENOUGH]
         if small:
-            return good[0] if good else max(small, key=lambda page: _fills(page, extent_m))
+            best = max(small, key=lambda page: page.filled)
+            return next((page for page in small if page.is_filled), best)
     largest = names[-1]
     page = _fill_page(replace(empty, name=largest, size_mm=SIZES_MM[largest]), blocks)
     if page is None:
         raise CrowdedError(f"tables of {sum(blocks)} rows are more than a sheet holds")
-    scale = math.ceil(float((1000 * extent_m / _room_mm(page)).max()))
+    scale = math.ceil(float((1000 * extent_m / page.free_mm).max()))
     return replace(page, scale=scale)
 
 
-def _fit_sheet(
-    page: Page, scales: Sequence[int], extent_m: FloatArray, blocks: list[int]
-) -> Page | None:
+def _fit_sheet(page: Page, scales: Sequence[int], blocks: list[int]) -> Page | None:
     """Return a sheet at the largest scale at which it holds a plan; None if there is none.
 
     Of the ways to hold it there the first that it fills well enough, else the first.
@@ -240,11 +264,10 @@ def _fit_sheet(
             # three rows under a head are a table, fewer look forgotten
             for least in (3, 1)
             if (filled := _fill_page(layout, blocks, least)) is not None
-            and _holds(filled, extent_m)
+            and (filled.extent_m * filled.mm_per_m <= filled.free_mm).all()
         ]
         if found:
-            good = [layout for layout in found if _fills(layout, extent_m) >= _ENOUGH]
-            return (good or found)[0]
+            return next((layout for layout in found if layout.is_filled), found[0])
     return None
 
 
@@ -256,22 +279,11 @@ def _list_layouts(page: Page) -> Iterator[Page]:
             yield replace(page, size_mm=size_mm, is_beside=is_beside)
 
 
-def _fills(page: Page, extent_m: FloatArray) -> float:
-    """Return how much of the room that a page has for a plan it takes."""
-    return float(np.prod(extent_m * page.mm_per_m) / np.prod(_room_mm(page)))
-
-
-def _room_mm(page: Page) -> FloatArray:
-    """Return width and height that a plan may have on a page, its dimensions around it."""
-    x0, y0, x1, y1 = page.drawing_mm
-    return np.array([x1 - x0, y1 - y0]) - 2 * page.around_mm
-
-
 def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     """Return a page with as many rows below the plan as its tables need; None if over half.
 
-    Or if nothing would stand beside the plan where there is a column for it. Of a table that is
-    broken, each part has so many rows at least.
+    Or if nothing would stand beside the plan where there is a column for it. The first block, scale
+    bar and axes, is whole; of a table that is broken, each part has so many rows at least.
     """
     if page.is_beside and not any(blocks[2:]):
         return None
@@ -279,7 +291,9 @@ def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     for rows in range(TITLE_ROWS, most):
         filled = replace(page, rows=rows)
         places = filled.place_tables(blocks)
-        if places is not None and all(_is_unbroken(parts, least) for parts in places):
+        if places is None or len(places[0]) > 1:
+            continue
+        if all(_is_unbroken(parts, least) for parts in places):
             return filled
     return None
 
@@ -316,7 +330,3 @@ def fill_slots(slots: Iterator[Slot], blocks: Sequence[int]) -> list[list[Slot]]
             is_fresh = False
         places.append(parts)
     return places
-
-
-def _holds(page: Page, extent_m: FloatArray) -> bool:
-    return bool((extent_m * page.mm_per_m <= _room_mm(page)).all())

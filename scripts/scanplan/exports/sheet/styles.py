@@ -26,7 +26,9 @@ class Paper:
     MARGIN = 10.0  # around the frame; on the left twice as much, to file it (ISO 5457)
     COLUMN = 60.0  # of tables: a third of a title block, which is 180 wide (ISO 7200)
     ROW = 4.0  # of tables: twice the smallest letters and a little
-    AROUND = 24.0  # of a plan on each side: its chains of dimensions, and words beside them
+    # of a plan, left, below, right and above: two chains or one, and words beyond the first
+    AROUND = (22.0, 22.0, 14.0, 14.0)
+    BARE = (10.0, 10.0, 10.0, 10.0)  # of one without dimensions
     GAP = 1.0  # between letters and lines
     SAMPLE = 9.0  # of a legend
     CHAIN = 8.0  # between chains of dimensions: letters above one line and below the next
@@ -140,6 +142,7 @@ _DASHED, _DOTTED = DASHES_MM["DASHED"], DASHES_MM["DOTTED"]
 STYLES = {
     "room": Style("A-AREA", ink="none"),
     "axis": Style("A-WALL-CNTR", ink="none"),
+    "recess": Style("A-WALL-CNTR", ink="none"),
     "hidden": Style("A-AREA-NSEN", "ground not seen by the scans used", FAINT, "#f4f4f4", _DOTTED),
     "furniture": Style("A-FURN", "furniture, as far as seen", ink=FAINT),
     "fixture": Style("A-FLOR-PFIX"),

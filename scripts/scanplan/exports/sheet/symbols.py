@@ -9,15 +9,25 @@ from scanplan.exports.sheet.marks import Symbol
 from scanplan.plan.floorplan import OPENINGS
 from scanplan.types import FloatArray
 
+AJAR = "-45"
+"""What names of leaves end in that are drawn open by half a right angle."""
 
-def _swing(hinge: float, tip: float) -> list[FloatArray]:
+
+def _swing(hinge: float, tip: float, open_deg: float = 90.0) -> list[FloatArray]:
     """Return a leaf that opens to the left of its wall's way, and the way of its tip."""
-    length = abs(tip - hinge)
-    bulge = math.copysign(math.tan(math.pi / 8), hinge - tip)
-    return [
-        np.array([[hinge, 0, 0], [hinge, length, 0]]),
-        np.array([[hinge, length, bulge], [tip, 0, 0]]),
-    ]
+    open_rad = math.radians(open_deg)
+    x = hinge + (tip - hinge) * math.cos(open_rad)
+    y = abs(tip - hinge) * math.sin(open_rad)
+    bulge = math.copysign(math.tan(open_rad / 4), hinge - tip)
+    return [np.array([[hinge, 0, 0], [x, y, 0]]), np.array([[x, y, bulge], [tip, 0, 0]])]
+
+
+def _swings(ending: str = "", open_deg: float = 90.0) -> dict[str, list[FloatArray]]:
+    return {
+        f"SWING-LEFT{ending}": _swing(0.0, 1.0, open_deg),
+        f"SWING-RIGHT{ending}": _swing(1.0, 0.0, open_deg),
+        f"SWING-2{ending}": [*_swing(0.0, 0.5, open_deg), *_swing(1.0, 0.5, open_deg)],
+    }
 
 
 _SIDES = [np.array([[0, y, 0], [1, y, 0]]) for y in (-0.5, 0.5)]
@@ -29,9 +39,8 @@ BLOCKS = {
         np.array([[0, 0, 0], [1, 0, 0]]),
     ],
     "PASSAGE": _SIDES,
-    "SWING-LEFT": _swing(0.0, 1.0),
-    "SWING-RIGHT": _swing(1.0, 0.0),
-    "SWING-2": [*_swing(0.0, 0.5), *_swing(1.0, 0.5)],
+    **_swings(),
+    **_swings(AJAR, 45.0),
     # two panels that overlap in the middle, each on its track
     "SLIDING": [
         np.array([[a, y, 0], [b, y, 0]]) for a, b, y in ((0, 0.55, 0.15), (0.45, 1, -0.15))
