@@ -40,6 +40,9 @@ def with_wall(line, openings=(), **columns):
         ((9.5, 1.0, 10.7, 1.3), False),
         # the east side of the wall between the rooms once more, which is 0.1 m thick
         ((4.1, 2.5, 4.1, 0.5), True),
+        # and 0.08 m before it, by what faces err by, but not 0.25 m
+        ((4.18, 2.5, 4.18, 0.5), True),
+        ((4.35, 2.5, 4.35, 0.5), False),
     ],
 )
 def test_walls_behind_facades_or_in_thicker_ones_are_left_out(line, is_left_out):

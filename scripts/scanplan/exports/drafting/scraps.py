@@ -35,7 +35,7 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
       likely wrong than right;
     - what crosses a facade or lies behind it, bounds no room and is turned away from it: what is
       seen through windows;
-    - what lies in a thicker wall: its one side once more.
+    - what lies in a thicker wall, or beside it by what faces err by: its one side once more.
     """
     floor = overlays.unite_areas(plan.areas)
     is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan, floor)
@@ -127,10 +127,14 @@ def _find_outside(plan: FloorPlan) -> BoolArray:
 
 
 def _find_within(plan: FloorPlan) -> BoolArray:
-    """Return which walls (n,) lie with nearly all of their ground in one of known thickness."""
+    """Return which walls (n,) lie with nearly all of their ground in one of known thickness.
+
+    Or beside it: what is farther off its side than faces err by is another surface.
+    """
     bodies = plan.bodies
     thick = np.flatnonzero(plan.thick)
-    of, number = shapely.STRtree(bodies[thick]).query(bodies).reshape(2, -1)
-    common_m2 = shapely.area(overlays.intersect_areas(bodies[of], bodies[thick[number]]))
+    around = overlays.buffer_shapes(bodies[thick], END_M, join_style="mitre")
+    of, number = shapely.STRtree(around).query(bodies).reshape(2, -1)
+    common_m2 = shapely.area(overlays.intersect_areas(bodies[of], around[number]))
     is_within = (common_m2 >= _WITHIN * shapely.area(bodies[of])) & (of != thick[number])
     return np.isin(np.arange(len(bodies)), of[is_within])
