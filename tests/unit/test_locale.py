@@ -19,7 +19,7 @@ from scanplan.exports.sheet.lettering import measure_width_mm
 from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
-from scanplan.exports.sheet.styles import LAYERS, Paper
+from scanplan.exports.sheet.styles import LAYERS, STYLES, Paper
 from scanplan.exports.sheet.title import SheetFacts
 from scanplan.project.words_file import read_layers, read_words
 
@@ -211,6 +211,15 @@ def test_a_file_that_is_not_there_is_told(read):
 def test_a_language_or_layers_that_are_not_ours_are_refused_with_the_key_and_what_is(read, said):
     with pytest.raises(StageError, match=said):
         read("it")
+
+
+@pytest.mark.parametrize("language", ["", *LANGUAGES])
+def test_a_legend_keeps_to_its_column(language):
+    locale = make_locale("m", read_words(language) if language else None)
+    kinds = [kind for kind, style in STYLES.items() if style.meaning]
+    items = title.draw_legend(kinds, [Slot(0.0, 100.0, len(kinds))], locale)
+    reach = {item.text: _reach(item)[1] for item in items if isinstance(item, Word)}
+    assert [text for text, right in reach.items() if right > Paper.COLUMN - Paper.GAP] == []
 
 
 @pytest.mark.parametrize("unit", ["m", "mm", "ft"])
