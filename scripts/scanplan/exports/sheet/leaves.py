@@ -54,7 +54,6 @@ def draw_swing(door: Symbol, leaves: Leaves, walls: BaseGeometry) -> Symbol:
     ----------
     door : Symbol
         In the middle of its wall.
-    leaves : Leaves
     walls : shapely geometry
         Ground of walls, openings cut out, map frame.
     """
