@@ -268,7 +268,8 @@ def test_rooms_beside_a_wall_that_went_have_changed_and_others_have_not():
     areas = [shapely.box(0, 0, 5.2, 5), shapely.box(5.4, 0, 8, 5)]
     b.plan.rooms["geometry"][:] = [shapely.to_wkb(area) for area in areas]
     rooms = told(compare(a, b), "room")
-    assert [(c.verdict, c.number_a, c.number_b) for c in rooms] == [(MOVED, 0, 0), (MOVED, 1, 1)]
+    found = [(c.verdict, c.number_a, c.number_b) for c in rooms]
+    assert found == [(verdicts.ALTERED, 0, 0), (verdicts.ALTERED, 1, 1)]
     # parted otherwise, while no wall has changed
     c = survey(doors=[])
     c.plan.rooms["geometry"][:] = [shapely.to_wkb(area) for area in areas]

@@ -58,7 +58,7 @@ def test_the_moved_wall_is_told_and_nothing_else(compared):
     columns = tables.read_table(path, schemas.CHANGES)
     rows = np.flatnonzero(columns["likely"] & (columns["element"] != "furniture"))
     found = {(columns["element"][row], columns["verdict"][row]) for row in rows}
-    assert found == {("wall", "moved"), ("room", "moved")}
+    assert found == {("wall", "moved"), ("room", "altered")}
     is_wall = rows[columns["element"][rows] == "wall"]
     assert columns["x_moved_m"][is_wall] == pytest.approx(NEW_M - OLD_M, abs=0.02)
     assert columns["y_moved_m"][is_wall] == pytest.approx(0.0, abs=0.02)

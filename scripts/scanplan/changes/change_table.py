@@ -13,6 +13,7 @@ from scanplan.changes.frames import FrameTie
 from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.scan_plane import ScanPlane, are_one_plane
 from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES, Change
+from scanplan.changes.wholes import list_wholes, number_wholes
 from scanplan.plan.floorplan import say_count
 from scanplan.types import Array
 
@@ -34,6 +35,7 @@ def tabulate_changes(changes: Sequence[Change]) -> dict[str, Array]:
         "kind_b": np.array([c.kind_b for c in changes], object),
         **tabulate_shapes(changes),
         "doubt": np.array([c.doubt for c in changes], object),
+        "whole": number_wholes(changes).astype(np.int32),
     }
 
 
@@ -88,23 +90,25 @@ def _round(values: Array) -> list[float]:
 def summarise_changes(changes: Sequence[Change]) -> list[str]:
     """Return in a line for each kind of element what became of it.
 
-    Walls are counted by their length, the others by number.
+    Of walls by the length, too.
     """
-    return [line for table in _TABLES if (line := _summarise(table, changes))]
+    wholes = list_wholes(changes)
+    return [line for table in _TABLES if (line := _summarise(table, wholes))]
 
 
-def _summarise(table: str, changes: Sequence[Change]) -> str:
-    of_table = [c for c in changes if c.table == table]
-    parts = []
+def _summarise(table: str, wholes: Sequence[Sequence[Change]]) -> str:
+    of_table = [parts for parts in wholes if parts[0].table == table]
+    said = []
     for verdict in (*CHANGES, *STATES, SAME, NOT_SEEN):
-        found = [c for c in of_table if c.verdict == verdict]
-        sure = [c for c in found if c.is_told or verdict in (SAME, NOT_SEEN)]
+        found = [parts for parts in of_table if parts[0].verdict == verdict]
+        sure = [parts for parts in found if not parts[0].is_doubtful]
         if sure:
-            length = f" ({sum(c.shape.length for c in sure):.1f} m)" if table == "wall" else ""
-            parts.append(f"{len(sure)} {verdict.replace('_', ' ')}{length}")
+            length_m = sum(part.shape.length for parts in sure for part in parts)
+            length = f" ({length_m:.1f} m)" if table == "wall" else ""
+            said.append(f"{len(sure)} {verdict.replace('_', ' ')}{length}")
         if doubtful := len(found) - len(sure):
-            parts.append(f"{doubtful} maybe {verdict}")
-    return f"{table}: {', '.join(parts)}" if parts else ""
+            said.append(f"{doubtful} maybe {verdict}")
+    return f"{table}: {', '.join(said)}" if said else ""
 
 
 def summarise_tie(tie: FrameTie) -> str:

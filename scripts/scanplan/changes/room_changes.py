@@ -13,6 +13,7 @@ from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.pairing import pair_most
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import (
+    ALTERED,
     CARRIED,
     CHANGED,
     CHANGES,
@@ -84,7 +85,7 @@ def _judge_pair(
         around = overlays.buffer_shapes(_places(wall), _TOUCH_M)
         if overlays.intersect_areas(apart, around).area > _CHANGED_SHARE * area.area:
             beside.append(wall)
-    return _judge_bounds(Change("room", number_a, number_b, MOVED, CHANGED, area), beside)
+    return _judge_bounds(Change("room", number_a, number_b, ALTERED, CHANGED, area), beside)
 
 
 def _judge_bounds(changed: Change, walls: Sequence[Change]) -> Change:

@@ -9,10 +9,12 @@ from dataclasses import dataclass, field, replace
 from shapely.geometry.base import BaseGeometry
 
 SAME, MOVED, GONE, NEW, NOT_SEEN = "same", "moved", "gone", "new", "not_seen"
+ALTERED = "altered"
+"""A room whose bounds are elsewhere now: it does not move itself."""
 SHUT, OPENED = "shut", "opened"
-VERDICTS = (SAME, MOVED, GONE, NEW, SHUT, OPENED, NOT_SEEN)
+VERDICTS = (SAME, MOVED, GONE, NEW, ALTERED, SHUT, OPENED, NOT_SEEN)
 """What may have become of an element."""
-CHANGES = (MOVED, GONE, NEW)
+CHANGES = (MOVED, GONE, NEW, ALTERED)
 STATES = (SHUT, OPENED)
 """Of doors: what rays show, though the building is the same unless a shut one is walled up."""
 _SEEN_FROM_LATER = {GONE: NEW, NEW: GONE, SHUT: OPENED, OPENED: SHUT}
@@ -84,6 +86,11 @@ class Change:
     def is_told(self) -> bool:
         """Whether it is that, or a door that is likely shut now, or opened."""
         return self.is_change or (self.verdict in STATES and self.p >= LIKELY)
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether it may be either, and is to be verified on site."""
+        return self.verdict in (*CHANGES, *STATES) and not self.is_told
 
     def turned(self) -> "Change":
         """Return it as seen from the other survey: what is gone there is new here."""

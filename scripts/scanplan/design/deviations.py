@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.comparison import Comparison
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, Change
+from scanplan.changes.verdicts import ALTERED, GONE, LIKELY, MOVED, NEW, NOT_SEEN, Change
 from scanplan.design.drawn_storey import DrawnStorey
 from scanplan.design.tolerances import Tolerances, rate_within
 from scanplan.geometry import overlays
@@ -112,7 +112,7 @@ def _judge(change: Change, built: FloorPlan, limit_m: float) -> tuple[str, float
         row = int(np.flatnonzero(built.openings["opening"] == change.number_b)[0])
         return OTHER_KIND, float(built.openings["p_kind"][row]), change.doubt
     if change.table == "room":
-        verdict = DEVIATES if change.verdict == MOVED else WITHIN
+        verdict = DEVIATES if change.verdict == ALTERED else WITHIN
         return (UNDECIDED, math.nan, change.doubt) if change.doubt else (verdict, change.p, "")
     if not math.isfinite(change.shift_m):
         return UNDECIDED, math.nan, change.doubt or "seen to stand there, but not measured"

@@ -11,7 +11,8 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGES, LIKELY, STATES
+from scanplan.changes.verdicts import LIKELY
+from scanplan.changes.wholes import list_wholes
 from scanplan.geometry import overlays
 from scanplan.report.templates import render_template
 from scanplan.types import FilePath
@@ -44,8 +45,8 @@ def format_page(
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     low_m, high_m = bounds[:, :2].min(axis=0) - _AROUND_M, bounds[:, 2:].max(axis=0) + _AROUND_M
     width_m, height_m = (high_m - low_m).tolist()
-    told = [c for c in compared.changes if c.verdict in (*CHANGES, *STATES)]
-    told.sort(key=lambda change: (not change.is_change, not change.is_told))
+    told = [of for of in list_wholes(compared.changes) if of[0].is_told or of[0].is_doubtful]
+    told.sort(key=lambda whole: (not whole[0].is_change, whole[0].is_doubtful))
     return render_template(
         sources,
         _TEMPLATE,
@@ -57,7 +58,7 @@ def format_page(
             (name, [(kind, _format_path(shape)) for kind, shape in shapes])
             for name, shapes in plans
         ],
-        rows=[(*say_change(change), change.doubt) for change in told],
+        rows=[(*say_change(whole), whole[0].doubt) for whole in told],
         likely=LIKELY,
         sheet=Markup(sheet.partition("?>")[2]),
     )

@@ -58,19 +58,18 @@ def _count_changes(changes: Columns | None) -> Row:
     is_same_wall = (verdict == SAME) & (element == "wall")
     return {
         **{
-            name: _count_elements(changes, changes["likely"] & (element == table))
+            name: _count_wholes(changes, changes["likely"] & (element == table))
             for name, table in zip(names, _COUNTED.values(), strict=True)
         },
         "doors_swung": int(np.isin(verdict, STATES).sum()),
-        "doubtful_changes": int((is_change & ~changes["likely"]).sum()),
+        "doubtful_changes": _count_wholes(changes, is_change & ~changes["likely"]),
         "unchanged_wall_m": round(float(changes["length_m"][is_same_wall].sum()), 2),
     }
 
 
-def _count_elements(changes: Columns, rows: BoolArray) -> int:
-    """Return of how many elements some rows are: a wall may have several."""
-    numbers = np.column_stack([changes["number_a"][rows], changes["number_b"][rows]])
-    return len(np.unique(numbers, axis=0))
+def _count_wholes(changes: Columns, rows: BoolArray) -> int:
+    """Return of how many wholes some rows are: a wall may have several."""
+    return len(np.unique(changes["whole"][rows]))
 
 
 def format_page(rows: Sequence[Row], sources: Mapping[str, str]) -> str:

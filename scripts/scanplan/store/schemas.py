@@ -521,7 +521,7 @@ to the first from where the survey began; `n_questions` how many it shows most o
 """
 CHANGES = Schema(
     "changes",
-    1,
+    2,
     {
         "change": "int32",
         "element": "string",
@@ -534,6 +534,7 @@ CHANGES = Schema(
             ("shift_m", "sigma_m", "x_moved_m", "y_moved_m", "length_m", "area_m2"), "float64"
         ),
         "doubt": "string",
+        "whole": "int32",
         "geometry": "binary",
     },
     ("change",),
@@ -543,12 +544,13 @@ CHANGES = Schema(
 
 `element` is wall (a stretch of one), opening, room or furniture; `number_a` and `number_b` are its
 numbers in the tables of either plan, -1 where it is in none. `verdict` is same, moved, gone, new,
-shut, opened or not_seen, `p` how likely that is (NaN of what was not seen), `likely` whether it is
-a change of the building that counts as one; `doubt` says what else it may be. What is gone stood
-where rays of b go through, what is new where rays of a did. `shift_m` is how far b lies from a,
-`sigma_m` its standard deviation: of a wall across, to the left of its line in a, of an opening the
-edge that differs most, along it, of furniture the way of its middle. A room has moved where walls
-that bound it have.
+altered, shut, opened or not_seen, `p` how likely that is (NaN of what was not seen), `likely`
+whether it is a change of the building that counts as one; `doubt` says what else it may be. What is
+gone stood where rays of b go through, what is new where rays of a did. `shift_m` is how far b lies
+from a, `sigma_m` its standard deviation: of a wall across, to the left of its line in a, of an
+opening the edge that differs most, along it, of furniture the way of its middle. A room is altered
+where walls that bound it have changed. Rows of one `whole`, the first `change` of them, count as
+one.
 
 Of both surveys the file states the names `a` and `b`; `motion`, from the frame of b to that of a
 (yaw_rad, x_m, y_m), its `covariance` of x, y and yaw about `centre_m`, `residual_m` of the faces

@@ -35,9 +35,14 @@ class DrawnChange:
 
 
 def list_drawn(compared: Comparison, tables: Sequence[str]) -> Iterator[DrawnChange]:
-    """Yield what likely changed or swung, and what was not seen, of some tables, with areas."""
+    """Yield what changed or swung, maybe or likely, and what was not seen, with areas.
+
+    Of furniture, which is carried about, only what likely did.
+    """
     for change in compared.changes:
-        if change.table in tables and (change.is_told or change.verdict == NOT_SEEN):
+        is_drawn = change.is_told or change.verdict == NOT_SEEN
+        is_drawn |= change.is_doubtful and change.table != "furniture"
+        if change.table in tables and is_drawn:
             survey = compared.a if change.number_a >= 0 else compared.b
             area = _cover(change, survey)
             is_of_a = change.number_a >= 0

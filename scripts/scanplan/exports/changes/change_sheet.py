@@ -1,23 +1,24 @@
 """The sheet of what changed between two surveys: both plans over one another, and a table."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 import shapely
 
-from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
-from scanplan.changes.verdicts import CHANGES, GONE, MOVED, NEW, NOT_SEEN, STATES
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, STATES, Change
+from scanplan.changes.wholes import list_wholes
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.changes.compared_sheet import (
     Arrow,
     ComparedFacts,
     Overlay,
-    Told,
     compose_compared_sheet,
     draw_areas,
     say_tie,
+    tell_whole,
 )
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
@@ -34,7 +35,7 @@ _STYLES |= dict.fromkeys(STATES, "swung")
 def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
     """Compose the sheet of what changed, in the frame of the earlier survey.
 
-    Walls and openings that changed are numbered, and listed; furniture is drawn alone.
+    Walls and openings that changed, or may have, are numbered and listed; furniture is drawn alone.
     """
     drawn = list(list_drawn(compared, ("wall", "opening", "column", "furniture")))
     changed = {c.change.number_a for c in drawn if c.change.table == "opening"}
@@ -44,23 +45,29 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         for symbol in list_symbols(compared.a.plan)
         if not _is_of(symbol, changed)
     ]
-    told = [
-        Told(say_change(of.change, facts.locale.fine[0], facts.locale.say), of.change.shape)
-        for of in drawn
-        if of.change.table in _TAGGED and of.change.is_told
-    ]
+    listed = [whole for whole in list_wholes(compared.changes) if _is_listed(whole[0])]
+    listed.sort(key=lambda whole: whole[0].is_doubtful)
     arrows = [
         Arrow(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
         for of in drawn
-        if of.change.verdict == MOVED and of.change.table != "room"
+        if of.change.verdict == MOVED and of.change.is_told
     ]
     return compose_compared_sheet(
         f"{compared.b.plan.name} against {compared.a.plan.name}",
-        Overlay(list(_draw(compared, drawn)), symbols, told, arrows),
+        Overlay(
+            list(_draw(compared, drawn)),
+            symbols,
+            [tell_whole(whole, facts.locale) for whole in listed],
+            arrows,
+        ),
         facts.locale,
         turn_deg=-compared.a.plan.main_direction_deg,
-        list_values=lambda page: _list_values(compared, facts, page),
+        list_values=lambda page: _list_values(compared, listed, facts, page),
     )
+
+
+def _is_listed(change: Change) -> bool:
+    return change.table in _TAGGED and (change.is_told or change.is_doubtful)
 
 
 def _is_of(symbol: Symbol, numbers: set[int]) -> bool:
@@ -79,27 +86,32 @@ def _draw(compared: Comparison, drawn: Sequence[DrawnChange]) -> Iterator[Mark]:
             yield from draw_areas("stood", shape, f"furniture-{number}")
     for row, of in enumerate(drawn):
         element = f"change-{row}"
-        kind = _STYLES[of.change.verdict]
+        kind = "verify" if of.change.is_doubtful else _STYLES[of.change.verdict]
         yield from draw_areas("gone" if kind == "moved" else kind, of.before, f"{element}-before")
         yield from draw_areas(kind, of.after, f"{element}-after")
 
 
-def _list_values(compared: Comparison, facts: ComparedFacts, page: Page) -> list[list[title.Value]]:
+def _list_values(
+    compared: Comparison, listed: Sequence[Sequence[Change]], facts: ComparedFacts, page: Page
+) -> list[list[title.Value]]:
     names = (compared.a.plan.name, compared.b.plan.name)
-    likely = [c for c in compared.changes if c.is_change]
+    likely = Counter(
+        whole[0].table for whole in list_wholes(compared.changes) if whole[0].is_change
+    )
     counts = [
-        say_count(n, table)
-        for table in ("wall", "opening", "room")
-        if (n := sum(c.table == table for c in likely))
+        say_count(likely[table], table) for table in ("wall", "opening", "room") if likely[table]
     ]
-    n_pieces = sum(c.table == "furniture" for c in likely)
     contents = ", ".join(counts) or "no wall, opening or room"
-    doubtful = sum(c.verdict in CHANGES and not c.is_change for c in compared.changes)
+    changed = f"{contents}; {likely['furniture']} of furniture"
+    doubtful = sum(whole[0].p < LIKELY for whole in listed)
     return [
         [("Project", facts.project or names[0], 2), ("Drawing", "Changes", 1)],
         [("Earlier, a", names[0], 2), ("Date of survey", facts.days[0], 1)],
         [("Later, b", names[1], 2), ("Date of survey", facts.days[1], 1)],
-        [("Changed", f"{contents}; {n_pieces} of furniture", 2), ("To verify", str(doubtful), 1)],
+        [
+            ("Changed", changed, 2),
+            ("To verify", str(doubtful), 1),
+        ],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "that of a", 1)],
         [("Software", facts.version or "scanplan", 3)],
         [("Frames tied", say_tie(compared.tie, page.locale), 3)],

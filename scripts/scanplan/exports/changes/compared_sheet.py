@@ -8,8 +8,9 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.changes.change_table import warn_of_others
-from scanplan.changes.change_words import ChangeWords
+from scanplan.changes.change_words import ChangeWords, say_change
 from scanplan.changes.frames import FrameTie
+from scanplan.changes.verdicts import Change
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
@@ -24,6 +25,7 @@ from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
 from scanplan.exports.sheet.paper import Page, Slot, choose_page
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.title import SheetFacts
+from scanplan.geometry import overlays
 from scanplan.types import FloatArray
 
 _MOST_ROWS = 40  # of the table: more are in the files beside
@@ -129,6 +131,12 @@ def say_tie(tie: FrameTie, locale: Locale) -> str:
     placed = f"frames tied to ± {locale.deviation(float(sigmas[:2].max()))}"
     turned = f"± {np.degrees(sigmas[2]):.2f}°"
     return warn_of_others(tie) or f"{placed}, {turned}; {agree}"
+
+
+def tell_whole(whole: Sequence[Change], locale: Locale) -> Told:
+    """Return what is told of a whole, see `wholes.list_wholes`: one row, and one number."""
+    shape = overlays.unite_shapes([part.shape for part in whole])
+    return Told(say_change(whole, locale.fine[0], locale.say), shape)
 
 
 def draw_areas(kind: str, shape: BaseGeometry, element: str) -> Iterator[Mark]:

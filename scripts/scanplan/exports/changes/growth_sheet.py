@@ -7,17 +7,17 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.changes.change_words import say_change
 from scanplan.changes.contributions import Contribution, sum_lengths_m
 from scanplan.changes.growth import Grown
 from scanplan.changes.verdicts import GONE, MOVED
+from scanplan.changes.wholes import list_wholes
 from scanplan.exports.changes.change_shapes import list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
     Overlay,
-    Told,
     compose_compared_sheet,
     draw_areas,
+    tell_whole,
 )
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
@@ -34,10 +34,10 @@ def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
     """Compose the sheet of a plan of several surveys, in the frame of the first."""
     symbols = [replace(symbol, verify=False, facts={}) for symbol in list_symbols(grown.plan)]
     told = [
-        Told(say_change(change, facts.locale.fine[0], facts.locale.say), change.shape)
+        tell_whole(whole, facts.locale)
         for step in grown.steps
-        for change in step.changes
-        if change.table in _TOLD and change.is_told
+        for whole in list_wholes(step.changes)
+        if whole[0].table in _TOLD and whole[0].is_told
     ]
     return compose_compared_sheet(
         f"{grown.names[-1]} on {', '.join(grown.names[:-1])}",
