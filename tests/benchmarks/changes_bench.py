@@ -20,6 +20,7 @@ import numpy as np
 import shapely
 import shapely.affinity
 import yaml
+from drawn_edits import rebuild_office
 from seen_edits import Stretch, cast_rays, find_shared
 
 from helpers.default_settings import SETTINGS
@@ -27,6 +28,7 @@ from scanplan.arrays import array_plan
 from scanplan.changes import comparison, growth
 from scanplan.changes.joined_scans import JoinedScans
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, OPENED, SHUT, Change
+from scanplan.errors import StageError
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.store import registered_scans, tables
@@ -54,7 +56,8 @@ SURVEYS = (
 )
 """By what was done to the floor (a: nothing yet) and the sensor; `part` is a shorter way.
 
-What is likely enough to be told was chosen on all but the last eight.
+What is likely enough to be told was chosen on all but the last eight, and on surveys of floors that
+are drawn at random (drawn1_vlp: a seed and a sensor), which have to be named.
 """
 GROWN = (("part_vlp", "mix1_las"), ("mix1_las", "part_vlp"), ("a_las", "same_vlp"))
 """Surveys of which one plan is made, of a scanner in space and a planar one, nothing changed."""
@@ -122,7 +125,7 @@ def bench(project: Path, folder: Path, names: Sequence[str]) -> None:
     Parameters
     ----------
     names : sequence of str
-        Of `SURVEYS`; all by default.
+        Of `SURVEYS`, which are the default, or of floors that are drawn.
     """
     wanted = list(names) or list(SURVEYS)
     for name in wanted:
@@ -137,18 +140,24 @@ def evaluate(folder: Path, names: Sequence[str]) -> None:
     """Print precision and recall over all pairs of surveys before and after."""
     earlier = [name for name in names if name.startswith("a_")]
     later = [name for name in names if not name.startswith("a_")]
-    reached = {name: _list_reached(folder, name) for name in names}
+    made = {edit for name in later for edit in list_edits(_kind_of(name))}
+    reached = {name: _list_reached(folder, name, made) for name in names}
     judged: list[Judged] = []
     for before in earlier:
         for after in later:
-            found = _compare(folder, before, after)
-            edits = [edit for edit in EDITS[_kind_of(after)] if edit.counts]
+            try:
+                found = _compare(folder, before, after)
+            except StageError as fault:
+                print(f"changes, {before} to {after}: refused, {fault}"[:150], flush=True)
+                continue
+            made = list_edits(_kind_of(after))
+            edits = [edit for edit in made if edit.counts]
             observable = {
                 edit
                 for edit in edits
                 if find_shared((reached[before][edit], reached[after][edit]), edit.sides) >= _SEEN
             }
-            judged.append(_judge(found.changes, EDITS[_kind_of(after)], observable))
+            judged.append(_judge(found.changes, made, observable))
             print(f"changes, {before} to {after}: {_say(judged[-1:])}", flush=True)
     print(f"changes, all: {_say(judged)}")
     by_kind: Counter[tuple[str, bool, str]] = Counter()
@@ -237,8 +246,11 @@ def _judge(changes: Sequence[Change], edits: Sequence[Edit], observable: set[Edi
     return Judged(len(right), len(likely), gone, became, observable)
 
 
-def _list_reached(folder: Path, name: str) -> dict[Edit, BoolArray]:
-    """Return which cells of edits the true rays of a survey reach, see `TrueRays.reach`."""
+def _list_reached(folder: Path, name: str, made: set[Edit]) -> dict[Edit, BoolArray]:
+    """Return which cells of edits the true rays of a survey reach, see `TrueRays.reach`.
+
+    Of an earlier survey those of all that were made since.
+    """
     rays = cast_rays(folder / f"surveys/{name}.yaml")
     kind = _kind_of(name)
     is_later = kind != "a"
@@ -249,7 +261,7 @@ def _list_reached(folder: Path, name: str) -> dict[Edit, BoolArray]:
         for f in json.loads((folder / "drawings/a.geojson").read_text())["features"]
         if _kind(f) == "wall"
     ]
-    listed = EDITS[kind] if is_later else {edit for edits in EDITS.values() for edit in edits}
+    listed = list_edits(kind) if is_later else made
     reached = {}
     for edit in listed:
         middle = edit.line.centroid
@@ -364,9 +376,10 @@ def _make_plan(project: Path, folder: Path, name: str) -> None:
     drawing = folder / f"drawings/{kind}.geojson"
     drawing.parent.mkdir(parents=True, exist_ok=True)
     drawing.write_text(json.dumps(draw(project, kind)))
+    seed = 1 + SURVEYS.index(name) if name in SURVEYS else _DRAWN_SEEDS + _seed_of(kind)
     simulated: dict[str, Any] = {
         "building": str(drawing.resolve()),
-        "seed": 1 + SURVEYS.index(name),
+        "seed": seed,
         **SENSORS[sensor],
     }
     if kind == "same":
@@ -401,15 +414,33 @@ def draw(project: Path, kind: str) -> Drawing:
     }
     if kind in rebuild:
         rebuild[kind](drawing)
+    if kind.startswith(_DRAWN):
+        rebuild_office(drawing, _seed_of(kind))
+        _carry_furniture(drawing, _DRAWN_CARRIED + _seed_of(kind))
     if kind in _CARRIED:
         _carry_furniture(drawing, _CARRIED[kind])
-    if kind.startswith("mix"):
+    if kind.startswith(("mix", _DRAWN)):
         drawing["features"] = [f for f in drawing["features"] if _kind(f) != "waypoints"]
     if kind == "part":
         _find(drawing, "waypoints")["geometry"]["coordinates"] = [*_PART_M, *_PART_ON_M]
     return drawing if kind == "a" else _turn(drawing)
 
 
+def list_edits(kind: str) -> tuple[Edit, ...]:
+    """Return what was done to a floor."""
+    if not kind.startswith(_DRAWN):
+        return EDITS.get(kind, ())
+    drawing = json.loads(_OFFICE.read_text(encoding="utf-8"))
+    return tuple(Edit(*edit) for edit in rebuild_office(drawing, _seed_of(kind)))
+
+
+def _seed_of(kind: str) -> int:
+    return int(kind.removeprefix(_DRAWN))
+
+
+_DRAWN = "drawn"
+_DRAWN_SEEDS, _DRAWN_CARRIED = 1000, 100  # of surveys and furniture of floors that are drawn
+_OFFICE = Path(__file__).parents[2] / "config/buildings/demo_office.geojson"
 _CARRIED = {"furn": 3, "furn2": 5, "mix3": 7, "mix4": 11, "mix5": 13}
 """Seeds of where furniture is carried to, by what was done."""
 EDITS: dict[str, tuple[Edit, ...]] = {
