@@ -95,7 +95,7 @@ def test_what_is_to_be_verified_is_drawn_numbered_and_listed_as_often_as_it_is_c
 
 
 def test_what_is_gone_for_certain_and_maybe_furniture_is_to_be_verified():
-    gone = replace(wall(5, 0, 5, 5, 4, p=0.6), p_furniture=0.39)
+    gone = replace(wall(5, 0, 5, 5, 4, p=0.7), p_furniture=0.29)
     sheet = compose([gone])
     assert beside(sheet, "To verify") == "1" and beside(sheet, "Changed").startswith("1 wall;")
     assert "gone" in {mark.kind for mark in sheet.marks}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scanplan.changes import ray_cells
+from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.ray_cells import CELL_M
 from scanplan.changes.surveys import Survey
 from scanplan.geometry.lines import Line
@@ -48,10 +48,18 @@ class Wall:
         """Whether two others meet its ends, as of no cupboard."""
         return min(self.p_met) > 0
 
-    def rate_built_in(self, cells: slice) -> float:
-        """Return how likely a stretch of it goes from wall to wall."""
-        left_m = max(cells.start, self.n_cells - cells.stop) * CELL_M
-        return math.prod(self.p_met) if left_m <= _MEETS_M + CELL_M / 2 else 0.0
+    def rate_built_in(self, share: float) -> float:
+        """Return how likely it has changed from wall to wall, if a share of its cells has."""
+        return math.prod(self.p_met) * share
+
+    def draw(self, cells: slice) -> shapely.LineString:
+        """Return a stretch of it as a line."""
+        return shapely.LineString(self.line.at(np.array([cells.start, cells.stop]) * CELL_M))
+
+    @property
+    def is_deep(self) -> bool:
+        """Whether it is as deep as furniture."""
+        return 2 * self.half_m >= verdicts.DEEP_M
 
     @property
     def span_m(self) -> tuple[float, float]:

@@ -10,12 +10,21 @@ import shapely.affinity
 
 from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.face_shifts import FaceShifts
-from scanplan.changes.ray_cells import AT_M, CELL_M, Later
-from scanplan.changes.scan_plane import are_one_plane
+from scanplan.changes.ray_cells import AT_M, CELL_M
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, SAME, SIGMAS, Change
 from scanplan.changes.wall_cells import Wall, list_walls
-from scanplan.geometry.lines import Line
+from scanplan.changes.wall_rays import (
+    HIT,
+    IN_OPENING,
+    LOWERED,
+    MATCHED,
+    PASSED,
+    UNKNOWN,
+    Stretch,
+    doubt_kind,
+    judge_rays,
+)
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
 
@@ -23,9 +32,6 @@ _LEAST_M = 0.3  # of a stretch: a shorter one may be a jamb, or what ends err by
 _OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the other survey has it
 _LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what they err by
 _COSINE = math.cos(math.radians(20))  # of faces of one piece: those of others are turned
-
-_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT, _UNKNOWN, _BEHIND = range(7)
-"""What another survey shows of a cell of a wall; `_BEHIND` of a stretch that rays end behind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +81,7 @@ def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     """Yield what another survey shows of the walls of one."""
     others = {wall.number: wall for wall in list_walls(by)}
+    sigma_m = float(np.median(shifts.sigma_m)) if len(shifts.sigma_m) else AT_M / SIGMAS
     own_m, others_m = (s.motion.move(centrelines_m(s.plan.openings)) for s in (of, by))
     for wall in list_walls(of):
         found = _find_shifts(wall, shifts)
@@ -88,21 +95,25 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
                 compared.is_lowered,
                 compared.is_hit,
             ],
-            [_MATCHED, _IN_OPENING, _PASSED, _LOWERED, _HIT],
-            _UNKNOWN,
+            [MATCHED, IN_OPENING, PASSED, LOWERED, HIT],
+            UNKNOWN,
         )
         is_open = _cover(wall, own_m[of.plan.openings["wall"] == wall.number])
         parts = list(_part(state, is_open, found.is_moved))
-        gone_m = sum(_length_m(cells) for kind, cells in parts if kind == _PASSED)
+        gone_m = sum(_length_m(cells) for kind, cells in parts if kind == PASSED)
+        is_changed = np.isin(state, (PASSED, LOWERED)) | found.is_moved
         for kind, cells in parts:
             # what is left beside a wall that is gone is no part of it that has moved
-            is_rest = found.is_moved[cells].any() and _length_m(cells) < gone_m
-            if kind == _MATCHED and not is_rest:
+            is_rest = _length_m(cells) < gone_m
+            if kind == MATCHED and not (is_rest and found.is_moved[cells].any()):
                 yield from _judge_shift(wall, cells, found, others)
-            elif kind != _IN_OPENING:
-                is_asked = kind not in (_PASSED, _LOWERED)
-                is_behind = is_asked and _lies_behind(wall, cells, (of, by))
-                yield _judge_rays(wall, _BEHIND if is_behind else kind, cells, compared)
+            elif kind != IN_OPENING:
+                with_it = is_changed.copy()
+                with_it[cells] = True
+                p_built_in = wall.rate_built_in(float(with_it[~is_open].mean()))
+                p_wall = verdicts.rate_wall(wall.p_true, p_built_in, is_deep=wall.is_deep)
+                stretch = Stretch(wall, cells, kind, p_wall, is_rest)
+                yield judge_rays(stretch, (of, by), compared, sigma_m)
 
 
 def _cover(wall: Wall, openings_m: FloatArray) -> BoolArray:
@@ -152,7 +163,7 @@ def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
 
 def _part(state: IntArray, is_open: BoolArray, is_moved: BoolArray) -> Iterator[tuple[int, slice]]:
     """Yield the states and cells of stretches that are long enough, the own openings left out."""
-    key = np.where(is_open, -1, 2 * state + ((state == _MATCHED) & is_moved))
+    key = np.where(is_open, -1, 2 * state + ((state == MATCHED) & is_moved))
     key = _join_short(key)
     begins, ends = _runs(key)
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
@@ -201,7 +212,7 @@ def _judge_shift(
         other,
         SAME,
         1 - p,
-        _shape(wall, cells),
+        wall.draw(cells),
         shift_m=shift_m,
         sigma_m=sigma_m,
     )
@@ -209,17 +220,25 @@ def _judge_shift(
         yield same
         return
     x_m, y_m = (shift_m * wall.line.normal).tolist()
-    doubt = "" if p >= LIKELY else "shown by one face alone"
-    p_moved = p * _rate_both(wall, others.get(other))
-    p_gone = p * wall.p_true
-    if p_moved < LIKELY <= p_gone and found.is_vacated[known].all():
-        # whatever stands behind it now, the wall that stood here does not
-        doubt = f"moved by {abs(shift_m):.2f} m, {p_moved:.2f}"
-        yield replace(same, number_b=-1, verdict=GONE, p=p_gone, doubt=doubt)
-        there = shapely.affinity.translate(same.shape, x_m, y_m)
-        yield replace(same, number_a=-1, verdict=NEW, p=p_moved, shape=there, doubt=doubt)
+    moved = replace(same, verdict=MOVED, moved_m=(x_m, y_m))
+    p_wall = _rate_both(wall, others.get(other))
+    if not found.is_vacated[known].all():
+        # what stands before a wall may be a cupboard, and the wall behind it
+        doubt = "" if p >= LIKELY else "shown by one face alone"
+        yield replace(moved, p=p * p_wall, doubt=doubt)
         return
-    yield replace(same, verdict=MOVED, p=p_moved, moved_m=(x_m, y_m), doubt=doubt)
+    # furniture is carried anywhere: it stands beside where a wall was no oftener than walls move
+    found_there = {"p": p * p_wall, "p_furniture": p * (1 - p_wall)}
+    p_gone = p * wall.p_true
+    if p * p_wall >= LIKELY or p_gone < LIKELY:
+        doubt = "" if p * p_wall >= LIKELY else doubt_kind(p, p_wall)
+        yield replace(moved, **found_there, doubt=doubt)
+        return
+    # whatever stands behind it now, the wall that stood here does not
+    doubt = f"moved by {abs(shift_m):.2f} m, {p * p_wall:.2f}"
+    yield replace(same, number_b=-1, verdict=GONE, p=p_gone, doubt=doubt)
+    there = shapely.affinity.translate(same.shape, x_m, y_m)
+    yield replace(same, number_a=-1, verdict=NEW, shape=there, **found_there, doubt=doubt)
 
 
 def _rate_both(wall: Wall, other: Wall | None) -> float:
@@ -231,52 +250,3 @@ def _rate_both(wall: Wall, other: Wall | None) -> float:
         return wall.p_true
     choose = max if wall.is_built_in and other.is_built_in else min
     return choose(wall.p_true, other.p_true)
-
-
-def _lies_behind(wall: Wall, cells: slice, surveys: tuple[Survey, Survey]) -> bool:
-    """Return whether what rays of a second survey end at is not what those of the first ended at.
-
-    From where both look it lies farther behind than poses, ranges and two maps err by.
-    """
-    if not are_one_plane(*(s.sight.plane for s in surveys)):
-        return False
-    reach_m = 2 * (wall.half_m + AT_M)
-    returns_m: tuple[list[FloatArray], list[FloatArray]] = ([], [])
-    for side in (1, -1):
-        normal = side * wall.line.normal
-        face = Line(wall.line.centre + wall.half_m * normal, normal)
-        low_m, high_m = sorted((side * cells.start * CELL_M, side * cells.stop * CELL_M))
-        for of, survey in zip(returns_m, surveys, strict=True):
-            of.append(survey.sight.place_returns(face, (low_m, high_m), reach_m))
-    return ray_cells.measure_shift(*(np.concatenate(of) for of in returns_m)) < -AT_M
-
-
-def _judge_rays(wall: Wall, kind: int, cells: slice, later: Later) -> Change:
-    is_of_it = np.zeros(wall.n_cells, bool)
-    is_of_it[cells] = True
-    n_passing, n_ending = later.count_places(is_of_it)
-    if kind == _BEHIND:
-        # they went through its face, all of them
-        n_passing, n_ending = n_passing + n_ending, 0
-    p = verdicts.rate_places(n_passing, n_ending)
-    shape = _shape(wall, cells)
-    if kind in (_PASSED, _BEHIND, _MATCHED) and p > 0.5:
-        # rays tell that it has changed, its plan whether it is a wall
-        p_wall = verdicts.rate_wall(wall.p_true, wall.rate_built_in(cells))
-        p_wall *= p
-        doubt = "" if p_wall >= LIKELY else f"wall {p_wall:.2f}, furniture {p - p_wall:.2f}"
-        gone = Change("wall", wall.number, -1, GONE, p_wall, shape, doubt=doubt)
-        return replace(gone, p_furniture=p - p_wall)
-    if kind == _LOWERED:
-        # a window may be broken through as well, over what stands
-        n_over = len(np.unique(later.over[is_of_it[later.over[:, 0]], 2]))
-        p = verdicts.rate_places(n_over, 0) * wall.p_true / 2
-        doubt = "what stands there now is lower"
-        return Change("wall", wall.number, -1, GONE, p, shape, doubt=doubt)
-    if kind in (_HIT, _BEHIND):
-        return Change("wall", wall.number, -1, SAME, 1 - p, shape)
-    return Change("wall", wall.number, -1, NOT_SEEN, math.nan, shape)
-
-
-def _shape(wall: Wall, cells: slice) -> shapely.LineString:
-    return shapely.LineString(wall.line.at(np.array([cells.start, cells.stop]) * CELL_M))
