@@ -86,6 +86,7 @@ class GraphEquations:
         constraints: MotionConstraints,
         priors: FloatArray,
         prior_information: FloatArray,
+        prior_share: float = 1.0,
         *,
         planar: bool,
         kernel: float,
@@ -100,6 +101,7 @@ class GraphEquations:
         self._scan_from_world = se3.invert_pose(priors)
         self._information = self._reduce(constraints.information)
         self._prior_information = self._reduce(prior_information)
+        self._prior_share = prior_share
         every_pose = np.arange(len(priors))
         ends = (self._source, self._target)
         places = [(every_pose, every_pose), *((row, column) for row in ends for column in ends)]
@@ -113,6 +115,7 @@ class GraphEquations:
         prior_residual = twists.motion_to_twist(self._scan_from_world @ pose)
         weight, error = self._robust(residual, self._information)
         prior_weight, prior_error = self._robust(prior_residual, self._prior_information)
+        prior_error *= self._prior_share
         return GraphState(
             relative, residual, prior_residual, weight, prior_weight, error, prior_error
         )
@@ -134,9 +137,7 @@ class GraphEquations:
     def normal_equations(self, state: GraphState) -> tuple[sparse.csc_array, FloatArray]:
         """Return Hessian and gradient of the weighted squared error in the free dimensions."""
         jacobian = self._reduce(_jacobian(state.prior_residual))
-        pulled = _transpose(jacobian) @ (
-            state.prior_weight[:, None, None] * self._prior_information
-        )
+        pulled = _transpose(jacobian) @ self._weighted_priors(state)
         own = pulled @ jacobian
         gradient = _apply(pulled, state.prior_residual[:, self._dimensions])
         information = state.weight[:, None, None] * self._information
@@ -157,8 +158,8 @@ class GraphEquations:
 
         Their covariance is the Hessian of `normal_equations`.
         """
-        priors = state.prior_weight[:, None, None] * self._prior_information
-        of_priors = _transpose(self._reduce(_jacobian(state.prior_residual))) @ _root(priors)
+        priors = _root(self._weighted_priors(state))
+        of_priors = _transpose(self._reduce(_jacobian(state.prior_residual))) @ priors
         root = _root(state.weight[:, None, None] * self._information)
         of_ends = [
             (rows, _transpose(jacobian) @ root)
@@ -181,6 +182,11 @@ class GraphEquations:
         left, _, right = np.linalg.svd(moved[:, :3, :3])
         moved[:, :3, :3] = left @ right
         return moved
+
+    def _weighted_priors(self, state: GraphState) -> FloatArray:
+        """Return the information (n, d, d) with which priors count."""
+        weight = self._prior_share * state.prior_weight
+        return weight[:, None, None] * self._prior_information
 
     def _jacobians(self, state: GraphState) -> tuple[FloatArray, FloatArray]:
         """Return how the residuals change with the source poses, (m, d, d), and the targets."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.geometry import se3, twists
-from scanplan.registration import loops, pose_graph
+from scanplan.registration import loops, pose_graph, shared_errors
 from scanplan.registration.constraints import PoseConstraint
 from scanplan.registration.graph_equations import MotionConstraints
 from scanplan.registration.loops import RowPair
@@ -148,6 +148,7 @@ def optimise_poses(
 
     sequence = edges_between(scans.edges, row_of_scan)
     poses = solve(start, sequence, is_start=True).world_from_scan
+    known = replace(known, share=shared_errors.measure_share(poses, known))
     loop_edges = align_visits(scans, poses, sequence, run, settings)
     all_edges = sorted([*sequence, *loop_edges], key=edge_ends)
     solution = solve(poses, all_edges)

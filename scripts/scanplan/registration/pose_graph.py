@@ -52,10 +52,14 @@ class KnownPoses:
     world_from_scan : (n, 4, 4) float64
     information : (n, 6, 6) float64
         Inverse covariance of each, in the scan's frame.
+    share : float
+        Of its information each adds to that of the others, 0 to 1: localisers err alike for a
+        while, see `shared_errors`.
     """
 
     world_from_scan: FloatArray
     information: FloatArray
+    share: float = 1.0
 
 
 def solve_pose_graph(
@@ -89,7 +93,9 @@ def solve_pose_graph(
     # a millimetre is enough for poses that another solution starts from
     rough_done = 10 * _STEP_DONE
     priors = known.world_from_scan
-    equations = GraphEquations(constraints, priors, known.information, planar=planar, kernel=kernel)
+    equations = GraphEquations(
+        constraints, priors, known.information, known.share, planar=planar, kernel=kernel
+    )
 
     def minimise(
         begin: FloatArray, step_done: float, is_free: BoolArray | None = None
