@@ -28,7 +28,7 @@ def survey(error):
 def test_errors_that_fade_count_as_their_autocorrelation_says(correlation):
     """First-order autoregression: its integrated time is (1 + r) / (1 - r)."""
     noise = np.random.default_rng(3).standard_normal((4000, 6))
-    error = lfilter([np.sqrt(1 - correlation**2)], [1, -correlation], noise, axis=0)
+    error = np.asarray(lfilter([np.sqrt(1 - correlation**2)], [1, -correlation], noise, axis=0))
     share = measure_share(*survey(0.5 * error))
     assert share == pytest.approx((1 - correlation) / (1 + correlation), rel=0.25)
 
