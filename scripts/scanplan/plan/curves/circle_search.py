@@ -70,7 +70,7 @@ def find_curves(
     found: dict[bytes, Curve] = {}
     for first, second in table.pairs_that_meet():
         curve = table.grow(first, second)
-        if curve is not None and curve.gain > -2 * math.log(priors.CURVED_SHARE):
+        if curve is not None and priors.WITNESS * curve.gain > -2 * math.log(priors.CURVED_SHARE):
             found.setdefault(curve.rows.tobytes(), curve)
     chosen: list[Curve] = []
     taken: set[int] = set()

@@ -8,7 +8,7 @@ import numpy as np
 from scanplan.geometry import intersections
 from scanplan.plan.model.line_labels import Stretch
 from scanplan.plan.plan_wall import PlanWall
-from scanplan.plan.tolerances import CORNER_M
+from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.types import FloatArray
 
 _OPENINGS = ("door", "shut", "glass", "window")
@@ -32,6 +32,12 @@ def find_corridors(walls: Sequence[PlanWall]) -> list[FloatArray]:
     """Return from where to where others that run on cross each wall, (n, 2), with their corners."""
     spans = intersections.stack_spans(walls)
     return [_find_crossed(wall, walls, spans) for wall in walls]
+
+
+def find_facades(walls: Sequence[PlanWall]) -> list[FloatArray]:
+    """Return the places along each wall where its end goes through one to where nobody was."""
+    spans = intersections.stack_spans(walls)
+    return [_find_facades(wall, walls, spans) for wall in walls]
 
 
 def end_where_seen(stretches: Sequence[Stretch], low_m: float, high_m: float) -> list[Stretch]:
@@ -64,6 +70,26 @@ def _find_crossed(
             reach_m = walls[row].half_m / sine + CORNER_M
             crossed_m.append((place_m - reach_m, place_m + reach_m))
     return np.array(crossed_m).reshape(-1, 2)
+
+
+def _find_facades(
+    wall: PlanWall, walls: Sequence[PlanWall], spans: intersections.SpanArrays
+) -> FloatArray:
+    found = wall.find_crossings(spans)
+    places_m = [
+        place_m
+        for row, place_m in zip(found.which.tolist(), found.place_m.tolist(), strict=True)
+        if not walls[row].right and _ends_behind(wall, walls[row], place_m)
+    ]
+    return np.sort(np.array(places_m, float))
+
+
+def _ends_behind(wall: PlanWall, facade: PlanWall, place_m: float) -> bool:
+    """Return whether a wall's shorter part goes on behind one that runs through it."""
+    to_low_m, to_high_m = place_m - wall.low_m, wall.high_m - place_m
+    end_m = wall.line.at(wall.low_m if to_low_m < to_high_m else wall.high_m)
+    is_behind = float(facade.line.offset_m(end_m)) < 0
+    return is_behind and min(to_low_m, to_high_m) > END_M and facade.runs_through(wall, place_m)
 
 
 def _lengthen(

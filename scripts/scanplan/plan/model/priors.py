@@ -44,7 +44,8 @@ _PASSED = np.array((0.002, 1, 0.002, 0.002, 1, 0.002, 0.002))
 """How likely the same are where the sensor was carried through: a pose may be wrong."""
 _SUREST = 1e-4  # densities are counted on some thousand surfaces: they tell no less than this
 _ODD = 0.03  # of cells show anything: edges, things in an opening, heights that err
-_WITNESS = 0.35  # of a witness a cell counts: columns and rows beside one another err together
+WITNESS = 0.35
+"""Of a witness a cell counts, or a point of a face: those beside one another err together."""
 ROWS_A_WITNESS = 10
 """Heights of a line that err together about what it is: shelves of a rack show at all of them."""
 FRONT_SHARE = 0.001
@@ -137,7 +138,7 @@ def weigh_states(ends: FloatArray) -> FloatArray:
     likely = np.einsum("crie,sie->crs", ends, np.log(np.concatenate([_ENDS, passed], axis=2)))
     anything = ends.sum(axis=(2, 3)) * np.log(1 / _ENDS.shape[-1])
     odd = anything[..., None] + np.log(_ODD)
-    return _WITNESS * np.logaddexp(likely + np.log1p(-_ODD), odd)
+    return WITNESS * np.logaddexp(likely + np.log1p(-_ODD), odd)
 
 
 def list_labels(n_rows: int, *, line: int) -> Labels:

@@ -11,7 +11,7 @@ from scanplan.plan.model.designed_walls import DesignedWalls
 from scanplan.plan.model.roofs import Roof, find_roof
 from scanplan.plan.model.surface_counts import COLUMN_M
 from scanplan.plan.model.surface_features import Features, Surroundings
-from scanplan.plan.model.wall_labels import LabelEvidence, label_wall
+from scanplan.plan.model.wall_labels import LabelEvidence, label_wall, part_wall
 from scanplan.plan.plan_wall import Nearly, PlanWall
 from scanplan.rays.ray_set import RaySet
 from scanplan.types import FloatArray
@@ -53,6 +53,8 @@ def label_surfaces(
     max_door_m : float
         Walls go on for a door as wide to the next one.
     """
+    facades = line_ends.find_facades(walls)
+    walls = [part for wall, at in zip(walls, facades, strict=True) for part in part_wall(wall, at)]
     parts = [found for wall in walls for found in label_wall(wall, evidence)]
     roof = find_roof([part for part, _ in parts], evidence.rays)
     surroundings = Surroundings([part for part, _ in parts])

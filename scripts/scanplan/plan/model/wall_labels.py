@@ -92,6 +92,14 @@ def label_wall(
             yield opened if is_whole else wall_pairs.refit_wall(opened), top_m
 
 
+def part_wall(wall: PlanWall, places_m: FloatArray) -> Iterator[PlanWall]:
+    """Yield the parts of a wall between places (n,) along it, in order."""
+    for low_m, high_m in pairwise([wall.low_m, *places_m.tolist(), wall.high_m]):
+        part = _clip_wall(wall, low_m, high_m)
+        if part.members:
+            yield wall_pairs.refit_wall(part) if len(places_m) else wall
+
+
 def _list_sides(wall: PlanWall) -> Iterator[Side]:
     """Yield the lines of a wall's faces, each where it is the nearest of its side."""
     deep_m = (DEEP_M if np.isnan(wall.thickness_m) else wall.thickness_m) + AT_M
