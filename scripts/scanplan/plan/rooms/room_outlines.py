@@ -69,7 +69,8 @@ def find_rooms(
     for part in _large_parts(open_floor, settings.min_area_m2):
         drawn, outline = _draw_room(part, track, bounds, taken)
         polygons = [] if drawn is None else [drawn]
-        if drawn is not None and drawn.intersects(driven):
+        # who stood still saw all from as far
+        if drawn is not None and driven.length and drawn.intersects(driven):
             polygons = bare_parts.cut_bare_parts(drawn, facing, driven, mouths)
         for polygon in polygons:
             walled = bare_parts.walled_share(polygon.exterior, outline)
