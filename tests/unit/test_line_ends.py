@@ -1,10 +1,17 @@
 """How far toy walls go on, in round numbers."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from helpers.plan_wall_making import wall
-from scanplan.plan.model.line_ends import end_where_seen, find_corridors, lengthen_walls
+from scanplan.plan.model.line_ends import (
+    end_where_seen,
+    find_corridors,
+    find_facades,
+    lengthen_walls,
+)
 from scanplan.plan.model.line_labels import Stretch
 
 NAN = float("nan")
@@ -43,6 +50,35 @@ class TestCorridors:
 
     def test_nothing_crosses_a_wall_alone(self):
         assert find_corridors([wall(0, 0, 4, 0)])[0].shape == (0, 2)
+
+
+class TestFacades:
+    """A facade along x, seen from above, and a wall through it at x = 2."""
+
+    @pytest.mark.parametrize(
+        ("inner", "facade", "places_m"),
+        [
+            ((2, 3, 2, -1), (0, 0, 4, 0), [3]),
+            ((2, -1, 2, 3), (0, 0, 4, 0), [1]),
+            ((2, 1, 2, -3), (0, 0, 4, 0), []),
+            ((2, 3, 2, -1), (2, 0, 4, 0), []),
+            ((2, 3, 2, -1), (4, 0, 0, 0), []),
+            ((2, 3, 2, -0.05), (0, 0, 4, 0), []),
+        ],
+        ids=["through", "back", "mostly behind", "at its end", "seen from there", "no farther"],
+    )
+    def test_an_end_behind_what_was_seen_from_before_alone_begins_there(
+        self, inner, facade, places_m
+    ):
+        of_two_sides = replace(wall(*inner), right=[None])
+        found = find_facades([of_two_sides, wall(*facade, thickness=NAN)])
+        np.testing.assert_allclose(found[0], places_m)
+        assert not len(found[1])
+
+    def test_a_wall_with_two_sides_is_no_facade(self):
+        seen = wall(0, 0, 4, 0)
+        found = find_facades([wall(2, 3, 2, -1), replace(seen, right=[None])])
+        assert not len(found[0])
 
 
 def stretch(kind, low_m, high_m):
