@@ -84,6 +84,14 @@ def test_a_door_is_drawn_ajar_where_a_wall_stands_in_its_way(in_the_way, tip):
     np.testing.assert_allclose(np.hypot(*(way - opened[0]).T), 1, atol=1e-9)
 
 
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_of_two_leaves_that_hangs_in_a_door_that_no_wall_is_in_the_way_of(order):
+    walls = shapely.union(WALL, shapely.box(0.9, 0.4, 2.1, 0.6))
+    both = np.concatenate([leaf(2, 0.05, 2, 0.95).lines_m, leaf(1, -0.05, 1, -0.95).lines_m])
+    seen = Leaves(both[list(order)], np.zeros(2, bool))
+    assert draw_swing(DOOR, seen, walls).ends_m[0, 1] == pytest.approx(-0.1)
+
+
 def test_a_leaf_that_goes_through_a_wall_hangs_in_no_door_but_one_a_person_has_seen():
     walls = shapely.union(WALL, shapely.box(0.9, 0.4, 2.1, 0.6))
     seen = leaf(2, 0.05, 2, 0.95)

@@ -82,9 +82,11 @@ def test_half_circles_are_linked_by_what_they_show(thinned):
     assert pairs == [(39 - x, x - 6) for x in range(19, 5, -1)]
 
 
-def test_odometry_ties_scans_that_a_localiser_places_otherwise(monkeypatch):
+@pytest.mark.parametrize("share", [1.0, 0.01])
+def test_odometry_ties_scans_that_a_localiser_places_otherwise(monkeypatch, share):
     """Two poses 1.3 m apart, off by 0.1 m, and a step of 1 m, off by 0.02: least squares."""
     monkeypatch.setattr(multiway, "align_visits", lambda *_, **__: [])
+    monkeypatch.setattr(multiway.shared_errors, "measure_share", lambda *_: share)
     known = select_section(SETTINGS, "registration") | {"localiser_sigma_m": 0.1}
     settings = registration_settings(known)
     priors = planar_poses([[0, 0], [1.3, 0]], np.zeros(2))
@@ -106,7 +108,7 @@ def test_odometry_ties_scans_that_a_localiser_places_otherwise(monkeypatch):
     assert place(None).world_from_cloud[1, 0, 3] == pytest.approx(1.3)
     placed = place(steps)
     # each pose gives way by its part of 0.3 m
-    x_m = 0.3 * 0.1**2 / (2 * 0.1**2 + 0.02**2)
+    x_m = 0.3 * 0.1**2 / share / (2 * 0.1**2 / share + 0.02**2)
     np.testing.assert_allclose(placed.world_from_cloud[:, 0, 3], [x_m, 1.3 - x_m], atol=1e-4)
     assert len(placed.edges) == len(placed.weight) == len(placed.residual) == 0
 

@@ -115,3 +115,11 @@ def test_a_face_behind_a_gap_of_a_facade_closes_a_recess_flush_with_it():
     # without a back it is a way out
     open_solid, open_drawn = poche(floorplan_making.plan(openings=floorplan_making.openings(rows)))
     assert not open_solid.contains(shapely.Point(7.35, 1.6)) and open_drawn["gap-3"] == "passage"
+
+
+def test_an_opening_that_a_person_stated_keeps_its_wall():
+    plan = with_wall((4.18, 2.9, 4.18, 0.1), [((4.18, 2.6, 4.18, 2.0), "door", 0.0, 2.0, 0, 1)])
+    assert NEW not in leave_scraps(plan).walls["wall"]
+    stated = np.array(["", "", "", "added"], object)
+    kept = leave_scraps(replace(plan, openings={**plan.openings, "corrected": stated}))
+    assert NEW in kept.walls["wall"] and 3 in kept.openings["opening"]

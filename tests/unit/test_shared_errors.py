@@ -7,6 +7,7 @@ from scipy.signal import lfilter
 from helpers.pose_chains import chain, pose
 from scanplan.geometry import se3, twists
 from scanplan.registration import pose_graph
+from scanplan.registration.graph_equations import GraphEquations
 from scanplan.registration.shared_errors import measure_share
 
 
@@ -47,6 +48,19 @@ def test_a_localiser_that_is_lost_for_a_while_does_not_hide_how_it_errs():
     alone = measure_share(*survey(error))
     error[500:505, 0] += 100
     assert measure_share(*survey(error)) > 0.7 * alone
+
+
+@pytest.mark.parametrize("share", [1.0, 0.2])
+def test_equations_are_the_slope_of_the_error_whatever_the_share(share):
+    true = np.array([pose(0.5 * i, 0, 0) for i in range(5)])
+    rng = np.random.default_rng(6)
+    priors, begin = (true @ twists.twist_to_motion(rng.normal(0, 0.01, (5, 6))) for _ in range(2))
+    information = np.repeat(1e4 * np.eye(6)[None], 5, axis=0)
+    equations = GraphEquations(chain(true), priors, information, share, planar=False, kernel=5.0)
+    _, gradient = equations.normal_equations(equations.evaluate(begin))
+    step = rng.normal(0, 1e-6, gradient.shape)
+    ahead, behind = (equations.evaluate(equations.move(begin, of)).cost for of in (step, -step))
+    assert ahead - behind == pytest.approx(4 * gradient @ step, rel=1e-3)
 
 
 def test_two_loops_weigh_more_than_a_localiser_that_is_off_by_the_same_for_half_of_a_drive():

@@ -16,7 +16,7 @@ from helpers.label_making import (
 from scanplan.plan.model import things
 from scanplan.plan.model.surface_counts import BEYOND, FACE, PASSED, SHALLOW, add_passages
 from scanplan.plan.model.surfaces import label_surfaces
-from scanplan.plan.model.wall_labels import LabelEvidence, count_wall, label_wall
+from scanplan.plan.model.wall_labels import LabelEvidence, count_wall, label_wall, part_wall
 
 MAX_OPENING_M = 2.0
 NO_WAY_M = np.empty((0, 2))
@@ -42,6 +42,15 @@ def openings_x(wall):
 
 
 class TestParts:
+    def test_a_wall_is_parted_with_its_faces_and_what_has_none_is_no_part(self):
+        wall, _ = paired(scans_at(5, solid), [(0, 5)], length_m=5.0)
+        found = list(part_wall(wall, np.array([3.0])))
+        ends_m = np.sort([wall.line.along_m(of.ends) for of in found])
+        np.testing.assert_allclose(ends_m, [(0, 3), (3, 5)], atol=1e-6)
+        assert [[face.length_m for face in of.members] for of in found] == [[3], [2]]
+        assert len(list(part_wall(wall, np.array([3.0, 3.0])))) == 2
+        assert list(part_wall(wall, np.empty(0))) == [wall]
+
     def test_a_solid_wall_stays_as_it_is(self):
         wall, looked = paired(scans_at(5, solid), [(0, 5)], length_m=5.0)
         ((part, top_m),) = parts(wall, looked)

@@ -49,9 +49,9 @@ def say_change(
     change = whole[0]
     numbers = [("a", [of.number_a for of in whole]), ("b", [of.number_b for of in whole])]
     number = "/".join(
-        survey + "+".join(map(str, sorted(set(of_survey))))
+        survey + "+".join(map(str, sorted({n for n in of_survey if n >= 0})))
         for survey, of_survey in numbers
-        if min(of_survey) >= 0
+        if max(of_survey) >= 0
     )
     kind = change.kind_a or change.kind_b or change.table
     by = ""

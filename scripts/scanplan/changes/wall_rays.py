@@ -75,7 +75,7 @@ def judge_rays(of: Stretch, surveys: tuple[Survey, Survey], later: Later, sigma_
 def _tell_gone(of: Stretch, p: float, doubt: str = "") -> Change:
     """Return that a stretch is gone: rays tell that, its plan whether it is a wall."""
     p_wall = p * of.p_wall
-    if p >= LIKELY:
+    if p >= LIKELY or not doubt:
         doubt = "" if p_wall >= LIKELY else doubt_kind(p, of.p_wall)
     gone = Change("wall", of.wall.number, -1, GONE, p_wall, of.wall.draw(of.cells), doubt=doubt)
     return replace(gone, p_furniture=p - p_wall)

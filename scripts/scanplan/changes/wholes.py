@@ -61,8 +61,10 @@ def _join(walls: Sequence[Change], openings: Sequence[BaseGeometry]) -> BoolArra
 def _meet(walls: Sequence[Change], openings: Sequence[BaseGeometry]) -> BoolArray:
     """Return which stretches (n, n) meet, or an opening between them."""
     shapes, between = (np.array(of, object) for of in ([wall.shape for wall in walls], openings))
-    is_beside = shapely.dwithin(shapes[:, None], between, _JOINED_M)
-    return shapely.dwithin(shapes[:, None], shapes, _JOINED_M) | (is_beside @ is_beside.T)
+    row, opening = shapely.STRtree(between).query(shapes, "dwithin", _JOINED_M).reshape(2, -1)
+    is_beside = csr_array((np.ones(len(row)), (row, opening)), shape=(len(shapes), len(between)))
+    is_near = shapely.dwithin(shapes[:, None], shapes, _JOINED_M)
+    return is_near | ((is_beside @ is_beside.T).toarray() > 0)
 
 
 def _are_in_line(walls: Sequence[Change]) -> BoolArray:

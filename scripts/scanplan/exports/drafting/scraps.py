@@ -41,8 +41,9 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
     is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan, floor)
     is_left_out |= _find_within(plan) | _find_nibs(plan, floor)
     is_left_out &= ~plan.thick & (np.asarray(plan.walls["corrected"], str) == "")
-    is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool)
-    is_wide |= np.asarray(plan.openings["corrected"], str) != ""
+    is_stated = np.asarray(plan.openings["corrected"], str) != ""
+    is_left_out[plan.hosts[is_stated & (plan.hosts >= 0)]] = False
+    is_wide = np.asarray(plan.openings["width_m"] >= END_M, bool) | is_stated
     is_wide &= ~np.append(is_left_out, False)[plan.hosts]
     kept = plan.walls["wall"][~is_left_out]
     is_shown = (plan.faces["wall"] < 0) | np.isin(plan.faces["wall"], kept)

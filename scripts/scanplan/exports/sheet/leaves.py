@@ -67,7 +67,7 @@ def draw_swing(door: Symbol, leaves: Leaves, walls: BaseGeometry) -> Symbol:
 
 
 def _list_swings(door: Symbol, leaves: Leaves) -> Iterator[Symbol]:
-    """Yield a door with the swing of the first leaf that hangs in it, wide open and ajar."""
+    """Yield a door with the swing of each leaf that may hang in it, wide open and ajar."""
     direction = (door.ends_m[1] - door.ends_m[0]) / door.width_m
     left = np.array([-direction[1], direction[0]])
     is_double = door.width_m > WIDEST_LEAF_M
@@ -83,7 +83,6 @@ def _list_swings(door: Symbol, leaves: Leaves) -> Iterator[Symbol]:
         block = "SWING-2" if is_double else one
         swing = replace(door, kind="swing", ends_m=from_m if side > 0 else from_m[::-1])
         yield from (replace(swing, block=block + ending) for ending in ("", AJAR))
-        return
 
 
 def _is_blocked(swing: Symbol, walls: BaseGeometry) -> bool:
