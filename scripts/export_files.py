@@ -78,6 +78,8 @@ def export_files(
     origin = ModelOrigin(
         author=settings["author"] or "",
         organisation=settings["organisation"] or "",
+        project=settings["project"] or "",
+        storey=settings["storey"] or "",
         version=version or "not stated",
         t_ns=t_ns,
         site=site,
@@ -101,7 +103,7 @@ def export_files(
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
-    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site)
+    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site, origin.storey)
     writers["json"] = lambda: room_graph.format_room_graph(drawn, rows)
     for what in [what for what in outputs if what in writers]:
         content = writers[what]()
@@ -112,7 +114,7 @@ def export_files(
     if "gpkg" in outputs:
         factor = find_factor(drawn.scale)
         layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered, factor)
-        layers |= wayfinding.imdf_layers(drawn, rows)
+        layers |= wayfinding.imdf_layers(drawn, rows, origin.storey)
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)

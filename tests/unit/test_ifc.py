@@ -410,6 +410,16 @@ def test_author_organisation_and_the_surveys_time_stand_in_it():
     assert faults(model) == []
 
 
+def test_project_and_storey_are_named_as_they_are_stated():
+    """Else by the survey, and as what was surveyed."""
+    named = opened(plan(), origin=ModelOrigin(project="Town hall", storey="Ground floor"))
+    kinds = ("IfcProject", "IfcBuilding", "IfcBuildingStorey")
+    assert [named.by_type(kind)[0].Name for kind in kinds] == [
+        *("Town hall", "Town hall", "Ground floor")
+    ]
+    assert opened(plan()).by_type("IfcProject")[0].Name == plan().name
+
+
 def test_a_site_on_earth_is_stated_where_it_is_known(model):
     assert not model.by_type("IfcMapConversion")
     assert model.by_type("IfcGeometricRepresentationContext")[0].TrueNorth is None

@@ -94,6 +94,11 @@ def test_a_language_has_an_order_of_its_own():
     assert Locale(decimal=",", phrases=words).say("1.5 of wall in line") == "Flucht in Wand: 1,5"
 
 
+@pytest.mark.parametrize("name", ["2024-13-45", "0000-00-00"])
+def test_a_name_like_a_day_that_is_none_stays_as_it_is(name):
+    assert Locale(decimal=",", date="%d.%m.%Y").say(name) == name
+
+
 def test_phrases_hold_numbers_and_other_phrases():
     words = {"{n} doors": "{n} Türen", "about {}": "etwa {}", "a plan: {}": "ein Plan: {}"}
     german = Locale(decimal=",", date="%d.%m.%Y", phrases=words)
@@ -166,6 +171,7 @@ def test_a_file_of_ones_own_is_read(tmp_path):
         ('decimal: ","\ndate: "%d"\nphrases: {"{n} doors of {}": "{2} {}"}', "{n} doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": "{porte"}', "doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"doors": ""}', "doors"),
+        ('decimal: ","\ndate: "%d"\nphrases: {"doors": "por\\ate"}', "doors"),
         ('decimal: ","\ndate: "%d"\nphrases: {"{n}": "{n}"}', "{n}"),
         ('decimal: ","\ndate: "%d"\nphrases: {"{}": "({})"}', "{}"),
     ],
@@ -184,6 +190,7 @@ def test_a_mistake_in_words_is_named(tmp_path, text, named):
         *("A-WALL: 'a/b'", "A-WALL: ''", "A-WALL: 3", "A-WALL: W\nA-DOOR: w", "A-WALL: [W]"),
         *("A-WALL: A-DOOR", "A-WALL: A-DOOR\nA-DOOR: A-WALL", "A-WALL: a-chng-same"),
         *("A-WALL: '0'", "A-WALL: DEFPOINTS", 'A-WALL: "a\\nb"', "A-WALL: ' W'", "NOPE: W"),
+        'A-WALL: "W\\u202e"',
     ],
 )
 def test_a_mistake_in_names_of_layers_is_named(tmp_path, text):

@@ -164,7 +164,7 @@ def test_the_overview_is_a_page_of_a4_without_dimensions():
     assert page is not None and page.page.name == "A4" and page.dimensions == []
     # what a manager asks: how much floor, which doors, what it is worth
     said = " ".join(word.text for word in paper_words(page))
-    assert "2 closed rooms, 21.0 m² net." in said and "2 doors: 1 of 0.9 m, 1 of 1.0 m." in said
+    assert "2 closed rooms, 21.0 m² net." in said and "2 doors: 1 × 0.90 m, 1 × 1.00 m." in said
     assert [stamp.facts["NAME"] for stamp in page.stamps] == ["Room 0", "Room 1"]
     assert any(word.element == "title:VERDICT" for word in paper_words(page))
     # more rooms than A4 has rows

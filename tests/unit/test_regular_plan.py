@@ -290,3 +290,12 @@ def test_a_wall_that_ends_before_another_is_drawn_on_to_it(gap_m, is_joined):
     walls = [*FRAME, ((5, 0.1 + gap_m, 5, 6), 0.1)]
     drawn = centrelines_m(draft_plan(plan_of(walls), SETTINGS)[0].walls)[2, 0]
     assert drawn == pytest.approx([5, 0 if is_joined else 0.1 + gap_m], abs=1e-6)
+
+
+def test_what_a_person_said_of_a_door_holds_on_both_drawings():
+    """A swing that is stated is drawn though a wall is in its way."""
+    drawn = floorplan_making.plan()
+    stated = np.array(["changed", *drawn.openings["corrected"][1:]])
+    by_hand = replace(drawn, openings={**drawn.openings, "corrected": stated})
+    regular, _ = draft_plan(by_hand, SETTINGS)
+    np.testing.assert_array_equal(regular.openings["corrected"], stated)

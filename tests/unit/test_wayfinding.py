@@ -46,7 +46,7 @@ def test_geojson_has_the_same_with_the_members_of_imdf(tmp_path):
     rows = element_tables.tabulate_elements(drawn, element_ids.ids_from_places(drawn))
     site = Site("EPSG:25832", 500_000.0, 5_400_000.0, turn_deg=90.0)
     path = tmp_path / "imdf.geojson"
-    path.write_text(wayfinding.format_imdf(drawn, rows, site))
+    path.write_text(wayfinding.format_imdf(drawn, rows, site, "Ground floor"))
     made = json.loads(path.read_text())
     by_type = {}
     for feature in made["features"]:
@@ -54,6 +54,7 @@ def test_geojson_has_the_same_with_the_members_of_imdf(tmp_path):
     assert {kind: len(found) for kind, found in by_type.items()} == {
         **{"level": 1, "unit": 2, "opening": 2}
     }
+    assert by_type["level"][0]["properties"]["name"] == {"en": "Ground floor"}
     # what is no category of IMDF's is a room
     assert [unit["properties"]["category"] for unit in by_type["unit"]] == ["restroom", "room"]
     door = by_type["opening"][0]

@@ -73,7 +73,7 @@ class IfcModel:
         self._history = self._owner_history()
         units = self._units()
         context = self._contexts()
-        project = self.root("IfcProject", (), Name=name)
+        project = self.root("IfcProject", (), Name=origin.project or name)
         project.RepresentationContexts = [context]
         project.UnitsInContext = self.new("IfcUnitAssignment", units)
         self.storey = self._storey(project, floor_m)
@@ -398,8 +398,8 @@ class IfcModel:
         placement = None
         for ifc_class, name, height_m in (
             ("IfcSite", "Site" if is_placed else "Site, place on earth unknown", 0.0),
-            ("IfcBuilding", self.name, floor_m),
-            ("IfcBuildingStorey", "Surveyed storey", 0.0),
+            ("IfcBuilding", self.origin.project or self.name, floor_m),
+            ("IfcBuildingStorey", self.origin.storey or "Surveyed storey", 0.0),
         ):
             placement = self.placement((0, 0, height_m), (1, 0), placement)
             part = self.root(

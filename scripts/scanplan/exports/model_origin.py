@@ -84,7 +84,7 @@ class ModelOrigin:
 
     Attributes
     ----------
-    author, organisation : str
+    author, organisation, project, storey : str
         Empty where not stated.
     version : str
         Of the code.
@@ -95,6 +95,8 @@ class ModelOrigin:
 
     author: str = ""
     organisation: str = ""
+    project: str = ""
+    storey: str = ""
     version: str = "not stated"
     t_ns: int = 0
     site: Site = field(default_factory=Site)

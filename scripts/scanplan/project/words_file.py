@@ -70,6 +70,8 @@ def read_words(language: str) -> dict[str, Any]:
         place = f"{file}: phrase {phrase!r}"
         if not isinstance(phrase, str) or not isinstance(words, str) or not words.strip():
             raise StageError(f"{place} has no words; write both as text, in quotation marks")
+        if fault := texts.explain_unfit(words):
+            raise StageError(f"{place} {fault}")
         # what is a place alone stands for itself, and would be said for ever
         if not any(map(str.isalpha, re.sub(_PLACE, "", phrase))):
             raise StageError(f"{place} has no letters; leave it out")
@@ -109,6 +111,8 @@ def read_layers(layers: FilePath | None) -> dict[str, str]:
         if not isinstance(other, str) or not 0 < len(other.strip()) == len(other) <= _LONGEST:
             limit = f"1 to {_LONGEST} letters, no space before or after them"
             raise StageError(f"{place} has no name of {limit}; write one")
+        if fault := texts.explain_unfit(other):
+            raise StageError(f"{place} {fault}")
         if _FORBIDDEN.search(other):
             raise StageError(f"{place}: {other!r} has signs that DXF forbids; use letters, - and _")
         if other.casefold() in taken:

@@ -32,7 +32,7 @@ _CATEGORIES = frozenset(
 """Those of IMDF's categories of units that are rooms of most buildings."""
 
 
-def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
+def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> dict[str, Layer]:
     """Return one level, its units and its openings, with IMDF's names of properties.
 
     Rooms are units, of the category that a person gave as their use, else `room`; doors and
@@ -44,6 +44,8 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
     ----------
     rows : dict
         See `element_tables.tabulate_elements`.
+    storey : str
+        Name of the level, by default that of the plan.
     """
     covered = shapely.get_parts(overlays.unite_areas([*plan.areas, *plan.bodies]))
     level_id = _identify(plan.name, "level")
@@ -72,7 +74,7 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
         "id": [level_id] * len(covered),
         "feature_type": ["level"] * len(covered),
         "category": ["unspecified"] * len(covered),
-        "name": [plan.name] * len(covered),
+        "name": [storey or plan.name] * len(covered),
         "ordinal": [0] * len(covered),
     }
     lines = floorplan.line_shapes(floorplan.centrelines_m(plan.openings)[ways])
@@ -83,17 +85,19 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows]) -> dict[str, Layer]:
     }
 
 
-def format_imdf(plan: FloorPlan, rows: Mapping[str, Rows], site: Site = NOWHERE) -> str:
+def format_imdf(
+    plan: FloorPlan, rows: Mapping[str, Rows], site: Site = NOWHERE, storey: str = ""
+) -> str:
     """Return the same features as the text of a FeatureCollection, placed as `plan.geojson` is.
 
     Parameters
     ----------
-    rows : dict
-        See `element_tables.tabulate_elements`.
+    rows, storey
+        As of `imdf_layers`.
     """
     features = [
         _make_feature(shape, {name: values[row] for name, values in layer.rows.items()})
-        for layer in imdf_layers(plan, rows).values()
+        for layer in imdf_layers(plan, rows, storey).values()
         for row, shape in enumerate(site.place_shapes(layer.shapes))
     ]
     return geojson.format_collection(plan.name, features, **geojson.state_system(site))

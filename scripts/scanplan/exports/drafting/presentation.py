@@ -1,5 +1,6 @@
 """The drawing that is handed on: a regular plan with solid walls, on a sheet."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -86,8 +87,10 @@ def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str])
     is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
     spans_m = _find_spans(regular, is_measured)
     unseen_m = floorplan.centrelines_m(regular.unseen)
+    n_openings = len(regular.openings["opening"])
+    unmarked = {**regular.openings, "corrected": np.full(n_openings, "", object)}
     return Shown(
-        plan=regular,
+        plan=replace(regular, openings=unmarked),
         titled=measured,
         marks=[*_draw_marks(regular)],
         symbols=[*_list_symbols(regular)],
@@ -147,7 +150,10 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     is_none = find_nowhere(plan) & (plan.hosts < 0)
     # a hole in a wall is one, whatever is behind it
     is_recess = ~shapely.is_empty(_find_backs(plan))
-    for row, symbol in enumerate(list_symbols(plan)):
+    for row, drawn in enumerate(list_symbols(plan)):
+        # a door swings as a person said; that he did is on the measured sheet
+        facts = {name: value for name, value in drawn.facts.items() if name != "corrected"}
+        symbol = replace(drawn, facts=facts)
         if is_recess[row]:
             yield replace(symbol, kind="recess", block=choose_block(symbol))
         elif not is_none[row]:
@@ -218,13 +224,10 @@ def _list_totals(plan: FloorPlan, locale: Locale) -> list[str]:
     totals = {use: float(areas_m2[uses == use].sum()) for use in sorted({*uses.tolist()} - {""})}
     sentences += [f"{clean_text(use)}: {locale.area(area)}" for use, area in totals.items()]
     for kind in ("door", "window"):
-        sizes, counts = np.unique(np.round(widths_m[kinds == kind], 1), return_counts=True)
-        listed = ", ".join(
-            f"{n} of {locale.measure(float(size), 1)}"
-            for size, n in zip(sizes, counts, strict=True)
-        )
+        sizes = Counter(locale.measure(size) for size in sorted(widths_m[kinds == kind].tolist()))
+        listed = ", ".join(f"{n} × {size}" for size, n in sizes.items())
         if listed:
-            sentences.append(f"{say_count(int(counts.sum()), kind)}: {listed}.")
+            sentences.append(f"{say_count(sizes.total(), kind)}: {listed}.")
     return _wrap([*sentences, _AREA_RULE], locale)
 
 

@@ -141,7 +141,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
             plan,
             walls=_leave_doubts({**plan.walls, **changed}),
             faces=_leave_doubts(_move_faces(plan, moved)),
-            openings=_leave_doubts(openings),
+            openings={**_leave_doubts(openings), "corrected": openings["corrected"]},
             rooms=_leave_doubts(_move_rooms(plan, moved)),
         )
     )

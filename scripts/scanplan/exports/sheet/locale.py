@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import date
 from functools import cached_property
@@ -149,7 +150,9 @@ class Locale:
     def _write(self, text: str) -> str:
         day = _DATE.fullmatch(text)
         if day:
-            return date(*map(int, day.groups())).strftime(self.date)
+            # a name may look like a day that is none
+            with suppress(ValueError):
+                return date(*map(int, day.groups())).strftime(self.date)
         if re.fullmatch(_NUMBER, text):
             return re.sub(r"(?<=\d)\.(?=\d)", self.decimal, text)
         return text

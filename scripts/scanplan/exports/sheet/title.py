@@ -123,7 +123,6 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
     turned = round(page.turn_deg, 1) + 0.0
     turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
-    north = "north unknown" if facts.north_deg is None else "north as drawn"
     n_doubts = len(list_doubts(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
@@ -145,7 +144,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("To verify on site", str(n_doubts) if n_doubts else "nothing flagged", 1),
         ],
         [
-            ("Frame", f"{facts.frame or 'map'}, {turn}; {north}", 2),
+            ("Frame", f"{facts.frame or 'map'}, {turn}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
         *([[("Corrected on site by", by, 3)]] if (by := _state_hands(plan)) else []),
