@@ -20,11 +20,9 @@ def solved(poses, links, information, prior_information, *, planar=True):
     source, target = np.array(links, np.int64).reshape(-1, 2).T
     motions = se3.invert_pose(poses[target]) @ poses[source]
     constraints = MotionConstraints(source, target, motions, np.asarray(information))
-    prior_information = np.asarray(prior_information)
-    solution = pose_graph.solve_pose_graph(
-        poses, constraints, pose_graph.KnownPoses(poses, prior_information), planar=planar
-    )
-    equations = GraphEquations(constraints, poses, prior_information, planar=planar, kernel=5.0)
+    known = pose_graph.KnownPoses(poses, np.asarray(prior_information))
+    solution = pose_graph.solve_pose_graph(poses, constraints, known, planar=planar)
+    equations = GraphEquations(constraints, known, planar=planar, kernel=5.0)
     hessian, _ = equations.normal_equations(equations.evaluate(poses))
     return solution.covariance, hessian.toarray()
 

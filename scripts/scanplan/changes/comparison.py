@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from scanplan.changes import face_shifts, frames, opening_changes, room_changes, wall_changes
 from scanplan.changes.curve_shifts import join_curves, measure_curves
@@ -11,6 +12,7 @@ from scanplan.changes.ray_cells import AT_M
 from scanplan.changes.seen_floors import see_floor
 from scanplan.changes.surveys import RaySight, Survey, read_rays
 from scanplan.changes.verdicts import SIGMAS, Change
+from scanplan.changes.wholes import list_wholes
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.store.registered_scans import RegisteredScans, ScanReader
 from scanplan.store.schemas import COLUMN, PIECE
@@ -36,6 +38,11 @@ class Comparison:
     b: Survey
     tie: FrameTie
     changes: Sequence[Change]
+
+    @cached_property
+    def wholes(self) -> list[list[Change]]:
+        """The changes by what they are of, see `wholes.list_wholes`."""
+        return list_wholes(self.changes)
 
 
 def compare_surveys(plans: tuple[FloorPlan, FloorPlan], scans: tuple[Scans, Scans]) -> Comparison:

@@ -40,6 +40,25 @@ class MotionConstraints:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class KnownPoses:
+    """Poses as measured on their own.
+
+    Attributes
+    ----------
+    world_from_scan : (n, 4, 4) float64
+    information : (n, 6, 6) float64
+        Inverse covariance of each, in the scan's frame.
+    share : float
+        Of its information each adds to that of the others, 0 to 1: localisers err alike for a
+        while, see `shared_errors`.
+    """
+
+    world_from_scan: FloatArray
+    information: FloatArray
+    share: float = 1.0
+
+
 @dataclass(frozen=True)
 class GraphState:
     """Poses compared with the measurements.
@@ -84,9 +103,7 @@ class GraphEquations:
     def __init__(
         self,
         constraints: MotionConstraints,
-        priors: FloatArray,
-        prior_information: FloatArray,
-        prior_share: float = 1.0,
+        known: KnownPoses,
         *,
         planar: bool,
         kernel: float,
@@ -95,18 +112,18 @@ class GraphEquations:
         self.factors: SuperLU | None = None
         self._source = constraints.source
         self._target = constraints.target
-        every = range(prior_information.shape[-1])
+        every = range(known.information.shape[-1])
         self._dimensions = np.array(twists.PLANAR_DIMENSIONS if planar else every)
         self._source_from_target = se3.invert_pose(constraints.target_from_source)
-        self._scan_from_world = se3.invert_pose(priors)
+        self._scan_from_world = se3.invert_pose(known.world_from_scan)
         self._information = self._reduce(constraints.information)
-        self._prior_information = self._reduce(prior_information)
-        self._prior_share = prior_share
-        every_pose = np.arange(len(priors))
+        self._prior_information = self._reduce(known.information)
+        self._prior_share = known.share
+        every_pose = np.arange(len(known.world_from_scan))
         ends = (self._source, self._target)
         places = [(every_pose, every_pose), *((row, column) for row in ends for column in ends)]
         self.size = len(self._dimensions)
-        self._hessian = _BlockMatrix(places, len(priors), self.size)
+        self._hessian = _BlockMatrix(places, len(known.world_from_scan), self.size)
 
     def evaluate(self, pose: FloatArray) -> GraphState:
         """Compare poses (n, 4, 4) with the measurements."""

@@ -12,7 +12,12 @@ from scipy.sparse.linalg import LinearOperator, SuperLU, cg, splu
 
 from scanplan.geometry.tolerances import ROUNDING
 from scanplan.registration import pose_covariance
-from scanplan.registration.graph_equations import GraphEquations, GraphState, MotionConstraints
+from scanplan.registration.graph_equations import (
+    GraphEquations,
+    GraphState,
+    KnownPoses,
+    MotionConstraints,
+)
 from scanplan.types import BoolArray, FloatArray
 
 _WIDE_KERNELS = (1000.0, 30.0, 3.0)  # times the kernel: at first all measurements count in full
@@ -41,25 +46,6 @@ class PoseGraphSolution:
     weight: FloatArray
     prior_weight: FloatArray
     covariance: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class KnownPoses:
-    """Poses as measured on their own.
-
-    Attributes
-    ----------
-    world_from_scan : (n, 4, 4) float64
-    information : (n, 6, 6) float64
-        Inverse covariance of each, in the scan's frame.
-    share : float
-        Of its information each adds to that of the others, 0 to 1: localisers err alike for a
-        while, see `shared_errors`.
-    """
-
-    world_from_scan: FloatArray
-    information: FloatArray
-    share: float = 1.0
 
 
 def solve_pose_graph(
@@ -93,9 +79,7 @@ def solve_pose_graph(
     # a millimetre is enough for poses that another solution starts from
     rough_done = 10 * _STEP_DONE
     priors = known.world_from_scan
-    equations = GraphEquations(
-        constraints, priors, known.information, known.share, planar=planar, kernel=kernel
-    )
+    equations = GraphEquations(constraints, known, planar=planar, kernel=kernel)
 
     def minimise(
         begin: FloatArray, step_done: float, is_free: BoolArray | None = None

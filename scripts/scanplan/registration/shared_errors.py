@@ -3,7 +3,7 @@
 import numpy as np
 
 from scanplan.geometry import se3, twists
-from scanplan.registration.pose_graph import KnownPoses
+from scanplan.registration.graph_equations import KnownPoses
 from scanplan.types import FloatArray
 
 _MOST_SIGMAS = 3.0  # a localiser that is lost for a while says nothing of how it errs otherwise

@@ -12,7 +12,6 @@ from scanplan.changes.change_words import say_change
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import LIKELY
-from scanplan.changes.wholes import list_wholes
 from scanplan.geometry import overlays
 from scanplan.report.templates import render_template
 from scanplan.types import FilePath
@@ -45,7 +44,7 @@ def format_page(
     bounds = bounds[np.isfinite(bounds).all(axis=1)]
     low_m, high_m = bounds[:, :2].min(axis=0) - _AROUND_M, bounds[:, 2:].max(axis=0) + _AROUND_M
     width_m, height_m = (high_m - low_m).tolist()
-    told = [of for of in list_wholes(compared.changes) if of[0].is_told or of[0].is_doubtful]
+    told = [of for of in compared.wholes if of[0].is_told or of[0].is_doubtful]
     told.sort(key=lambda whole: (not whole[0].is_change, whole[0].is_doubtful))
     return render_template(
         sources,

@@ -9,7 +9,6 @@ import shapely
 
 from scanplan.changes.comparison import Comparison
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, NOT_SEEN, STATES, Change
-from scanplan.changes.wholes import list_wholes
 from scanplan.exports.changes.change_shapes import DrawnChange, draw_unchanged, list_drawn
 from scanplan.exports.changes.compared_sheet import (
     Arrow,
@@ -45,7 +44,7 @@ def compose_change_sheet(compared: Comparison, facts: ComparedFacts) -> Sheet:
         for symbol in list_symbols(compared.a.plan)
         if not _is_of(symbol, changed)
     ]
-    listed = [whole for whole in list_wholes(compared.changes) if _is_listed(whole[0])]
+    listed = [whole for whole in compared.wholes if _is_listed(whole[0])]
     listed.sort(key=lambda whole: whole[0].is_doubtful)
     arrows = [
         Arrow(shapely.get_coordinates(of.change.shape.centroid)[0], np.array(of.change.moved_m))
@@ -95,9 +94,7 @@ def _list_values(
     compared: Comparison, listed: Sequence[Sequence[Change]], facts: ComparedFacts, page: Page
 ) -> list[list[title.Value]]:
     names = (compared.a.plan.name, compared.b.plan.name)
-    likely = Counter(
-        whole[0].table for whole in list_wholes(compared.changes) if whole[0].is_change
-    )
+    likely = Counter(whole[0].table for whole in compared.wholes if whole[0].is_change)
     counts = [
         say_count(likely[table], table) for table in ("wall", "opening", "room") if likely[table]
     ]
@@ -108,10 +105,7 @@ def _list_values(
         [("Project", facts.project or names[0], 2), ("Drawing", "Changes", 1)],
         [("Earlier, a", names[0], 2), ("Date of survey", facts.days[0], 1)],
         [("Later, b", names[1], 2), ("Date of survey", facts.days[1], 1)],
-        [
-            ("Changed", changed, 2),
-            ("To verify", str(doubtful), 1),
-        ],
+        [("Changed", changed, 2), ("To verify", str(doubtful), 1)],
         [("Scale", f"1:{page.scale}", 1), ("Sheet", page.name, 1), ("Frame", "that of a", 1)],
         [("Software", facts.version or "scanplan", 3)],
         [("Frames tied", say_tie(compared.tie, page.locale), 3)],

@@ -10,7 +10,6 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.changes.contributions import Contribution, sum_lengths_m
 from scanplan.changes.growth import Grown
 from scanplan.changes.verdicts import GONE, MOVED
-from scanplan.changes.wholes import list_wholes
 from scanplan.exports.changes.change_shapes import list_drawn
 from scanplan.exports.changes.compared_sheet import (
     ComparedFacts,
@@ -36,7 +35,7 @@ def compose_growth_sheet(grown: Grown, facts: ComparedFacts) -> Sheet:
     told = [
         tell_whole(whole, facts.locale)
         for step in grown.steps
-        for whole in list_wholes(step.changes)
+        for whole in step.wholes
         if whole[0].table in _TOLD and whole[0].is_told
     ]
     return compose_compared_sheet(

@@ -94,10 +94,13 @@ def label_wall(
 
 def part_wall(wall: PlanWall, places_m: FloatArray) -> Iterator[PlanWall]:
     """Yield the parts of a wall between places (n,) along it, in order."""
+    if not len(places_m):
+        yield wall
+        return
     for low_m, high_m in pairwise([wall.low_m, *places_m.tolist(), wall.high_m]):
         part = _clip_wall(wall, low_m, high_m)
         if part.members:
-            yield wall_pairs.refit_wall(part) if len(places_m) else wall
+            yield wall_pairs.refit_wall(part)
 
 
 def _list_sides(wall: PlanWall) -> Iterator[Side]:
