@@ -11,7 +11,9 @@ from helpers.correcting import MADE, corrected, faces_of, write_plan
 from helpers.refusals import assert_told, refused
 from scanplan.errors import StageError
 from scanplan.plan import planning
+from scanplan.stage.witness_table import SKETCH
 from scanplan.store import tables
+from scanplan.validation.verdict import judge_plan
 
 
 @pytest.fixture
@@ -247,3 +249,53 @@ def test_a_line_beside_a_wall_leaves_it_between_the_rooms_that_are_joined(plan):
     found = corrected(plan, beside, one)
     # 0.8 m x 3 m and 9 m2, and through the door of 0.9 m in the wall of 0.1 m
     assert sorted(found.rooms["area_m2"]) == pytest.approx([9.6, 11.49], abs=0.01)
+
+
+PARTITION = {"element": "wall", "at": [4.0, 0.4], "action": "remove"}
+MERGE = {"element": "room", "action": "merge", "at": [1, 1], "with": [5, 1]}
+
+
+def test_rooms_are_open_where_the_wall_between_them_goes(plan, caplog):
+    found = corrected(plan, PARTITION, {"element": "room", "at": [5, 1], "name": "Hall"})
+    assert found.rooms["closed"].tolist() == [False, False]
+    # 3 m long, less what the walls across reach over its ends
+    assert_told(caplog.text, value=("room 0", "2.7 m"), remedy="merge")
+    verdict = judge_plan(found)
+    assert verdict.worth == SKETCH and "Hall" in verdict.remedy
+
+
+def test_rooms_are_closed_once_they_are_one_or_parted_by_another_wall(plan):
+    assert corrected(plan, PARTITION, MERGE).rooms["closed"].tolist() == [True]
+    line = [[4.05, -0.1], [4.05, 3.1]]
+    other = {"element": "wall", "action": "add", "line": line, "thickness_m": 0.1}
+    assert corrected(plan, PARTITION, other).rooms["closed"].tolist() == [True, True]
+    door = {"element": "opening", "action": "remove", "at": [4.05, 1.5]}
+    assert corrected(plan, door).rooms["closed"].tolist() == [True, True]
+
+
+def test_a_wall_that_stood_within_a_room_opens_none(plan):
+    walls = MADE["walls"]()
+    stub = {name: values[5:] for name, values in walls.items()} | {"wall": np.array([6], np.int32)}
+    stub |= {"x0_m": [2.0], "y0_m": [-0.1], "x1_m": [2.0], "y1_m": [1.0], "face_left": [-1]}
+    grown = {n: np.append(v, np.asarray(stub[n], v.dtype)) for n, v in walls.items()}
+    tables.write_table(plan["walls"], planning.TABLES["walls"], grown)
+    rooms = MADE["rooms"]()
+    notched = shapely.box(0, 0, 4, 3) - shapely.box(1.95, 0, 2.05, 1.0)
+    rooms["geometry"][0] = shapely.to_wkb(notched)
+    tables.write_table(plan["rooms"], planning.TABLES["rooms"], rooms)
+    found = corrected(plan, {"element": "wall", "at": [2.0, 0.6], "action": "remove"})
+    assert len(found.walls["wall"]) == 6 and found.rooms["closed"].all()
+
+
+def test_a_wall_drawn_along_an_open_side_closes_the_room(plan):
+    walls = {n: v[[0, 1, 2, 3, 4]] for n, v in MADE["walls"]().items()}
+    tables.write_table(plan["walls"], planning.TABLES["walls"], walls)
+    openings = {n: v[[0, 2]] for n, v in MADE["openings"]().items()}
+    tables.write_table(plan["openings"], planning.TABLES["openings"], openings)
+    rooms = MADE["rooms"]() | {"closed": np.zeros(2, bool)}
+    tables.write_table(plan["rooms"], planning.TABLES["rooms"], rooms)
+    line = [[4.05, 0.0], [4.05, 3.0]]
+    wall = {"element": "wall", "action": "add", "line": line, "thickness_m": 0.1}
+    assert corrected(plan, wall).rooms["closed"].tolist() == [True, True]
+    half = wall | {"line": [[4.05, 0.0], [4.05, 1.0]]}
+    assert corrected(plan, half).rooms["closed"].tolist() == [False, False]

@@ -280,10 +280,15 @@ def test_what_a_person_corrected_is_neither_rated_nor_to_be_verified():
     np.testing.assert_array_equal(np.isnan(found["p_true"][rows]), by_hand != "")
 
 
-def test_a_room_whose_outline_is_not_closed_is_to_be_verified_unless_it_was_corrected():
+def test_a_room_whose_outline_is_not_closed_is_to_be_verified_unless_somebody_looked():
     rooms = {**PARTS["rooms"], "closed": np.zeros(len(PARTS["rooms"]["room"]), bool)}
     sure = changed(level=0.0)
-    for corrected, expected in (("", (True, confidence.NOT_CLOSED)), ("name", (False, ""))):
+    open_ = (True, confidence.NOT_CLOSED)
+    for corrected, expected in (
+        ("", open_),
+        ("changed by hand", open_),  # who names a room says nothing of its sides
+        ("checked by hand, A. Bee", (False, "")),
+    ):
         rooms["corrected"] = np.full(len(rooms["room"]), corrected, object)
         plan = floorplan.make_floorplan(PARTS | {"rooms": rooms}, 0.0, 2.5)
         found = rate(plan, model=sure)

@@ -254,7 +254,12 @@ def usual_thickness_m(walls: Sequence[PlanWall]) -> float:
 
     Of two it is the thinner: the other may be a wall with what stands before it.
     """
-    known_m = [wall.thickness_m for wall in walls if not math.isnan(wall.thickness_m)]
+    return median_thickness_m([wall.thickness_m for wall in walls])
+
+
+def median_thickness_m(thickness_m: Sequence[float]) -> float:
+    """Return the lower middle of what is known, NaN is not; of a partition where nothing is."""
+    known_m = [of_m for of_m in thickness_m if not math.isnan(of_m)]
     return float(statistics.median_low(known_m)) if known_m else _THICKNESS_M
 
 

@@ -312,6 +312,8 @@ Heights are above the floor, NaN where not known; -1 stands for no wall or no ro
 wall is inferred: there free floor is narrow, and parts two rooms. Missing returns count as rays,
 too: as many as were expected through a window above its sill, or through a gap of planar scans.
 """
+CHECKED = ("kept by hand", "checked by hand")
+"""How column `corrected` begins where a person has looked, and changed nothing."""
 ROOMS = Schema(
     "rooms",
     3,

@@ -15,6 +15,7 @@ import shapely
 from scanplan.geometry import overlays
 from scanplan.plan.floorplan import NUMBERS, FloorPlan, centrelines_m
 from scanplan.plan.tolerances import END_M
+from scanplan.store import schemas
 from scanplan.types import Array, BoolArray, Columns, FloatArray
 from scanplan.validation import surroundings
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
@@ -156,8 +157,11 @@ def _doubt_openings(rated: _Rated, plan: FloorPlan) -> None:
 
 
 def _doubt_rooms(rated: _Rated, plan: FloorPlan, doubtful_walls: BoolArray) -> None:
-    by_hand = plan.rooms.get("corrected", np.full(len(rated.p_true), "")) != ""
-    rated.add(~plan.rooms["closed"] & ~by_hand, OUTLINE, NOT_CLOSED, verify=True)
+    said = np.asarray(plan.rooms.get("corrected", np.full(len(rated.p_true), "")), str)
+    by_hand = said != ""
+    # who names a room says nothing of its sides
+    is_checked = np.array([of.startswith(schemas.CHECKED) for of in said.tolist()], bool)
+    rated.add(~plan.rooms["closed"] & ~is_checked, OUTLINE, NOT_CLOSED, verify=True)
     is_weak = _have_doubtful_walls(plan, doubtful_walls) & ~by_hand
     rated.add(is_weak, OUTLINE, OF_DOUBTFUL_WALLS, verify=True)
 

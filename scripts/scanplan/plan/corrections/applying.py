@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.errors import StageError
-from scanplan.plan.corrections import added, changed, named, outlines, things
+from scanplan.plan.corrections import added, changed, enclosure, named, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
 from scanplan.store import schemas
@@ -15,10 +15,10 @@ from scanplan.types import FloatArray
 
 SAID = {
     "remove": "changed by hand",
-    "keep": "kept by hand",
+    "keep": schemas.CHECKED[0],
     "change": "changed by hand",
     "add": "added by hand",
-    "settle": "checked by hand",
+    "settle": schemas.CHECKED[1],
     "split": "changed by hand",
     "merge": "changed by hand",
 }
@@ -57,7 +57,8 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
 
     Walls, openings and furniture are those nearest to the place of an entry, within reach, rooms
     those that it is in. Numbers stay what they were. With a wall go its faces, its openings and
-    its evidence; rooms keep their outlines, but for those that are parted or one.
+    its evidence; rooms keep their outlines, but for those that are parted or one, and are open
+    where a side of them went.
 
     Parameters
     ----------
@@ -73,6 +74,7 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         left of the plan.
     """
     outcome = Outcome()
+    enclosed = enclosure.draw_enclosure(rows)
     said = [c for c in corrections if c.element not in (*POINTS, LENGTH)]
     of_rooms = [c for c in said if c.element == "room" and c.action not in (*OUTLINES, SETTLE)]
     _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
@@ -89,6 +91,9 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         _tell_outline(correction, "does not part the room from wall to wall")
         for correction in pending
     ]
+    for room, bare_m in enclosure.follow_enclosure(rows, enclosed):
+        fault = f"room {room['room']} is open along {bare_m:.1f} m where nothing stands any more"
+        outcome.told.append(f"{fault}; merge it with the room beyond, or add a wall or an opening")
     _apply_found(rows, of_rooms, outcome)
     _apply_found(rows, [c for c in said if c.action == SETTLE], outcome)
     for correction in corrections:

@@ -51,7 +51,8 @@ def settle_room(rows: PlanRows, room: Row, said: str) -> None:
     along_m = [overlays.intersect_lines(axis, around).length for axis in axes]
     beside = zip(rows.walls, axes, along_m, strict=True)
     own += [wall for wall, axis, m in beside if 2 * m >= axis.length]
-    for row in (room, *own):
+    room["corrected"] = said
+    for row in own:
         leave_doubt(row, row["corrected"] or said)
 
 
