@@ -6,13 +6,16 @@ import pytest
 import shapely
 
 from helpers import floorplan_making
-from scanplan.exports import ifc
-from scanplan.exports.data import element_ids
+from scanplan.edited import dxf_reading
+from scanplan.exports import dxf, ifc
+from scanplan.exports.data import element_ids, element_tables, wayfinding
 from scanplan.exports.drafting import fixtures
 from scanplan.exports.drafting.presentation import compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.ifc_elements import furniture as ifc_furniture
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.openings import find_swings
+from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan.corrections import applying, rows
 from scanplan.project import corrections_file
 from scanplan.project.corrections_file import read_corrections
@@ -145,6 +148,43 @@ def test_the_use_of_a_room_and_its_number_stand_below_the_name_that_it_was_given
     assert (bath.facts["USE"], other.facts["USE"], len(other.words)) == ("restroom", "", 2)
     heights = [word.place[1] for word in bath.words]
     assert heights == sorted(heights, reverse=True)
+
+
+def test_a_number_that_a_person_gave_is_apart_from_the_name_everywhere(tmp_path):
+    measured, _ = corrected(
+        tmp_path,
+        '{element: room, at: [1, 2], number: "2.10", name: Bath, use: restroom}',
+        "{element: room, at: [5, 1], number: A-7}",
+        pieces=(),
+    )
+    assert measured.room_labels == ["2.10 Bath", "Room A-7"]
+    regular, drafted = draft_plan(measured, SETTINGS)
+    ids = element_ids.take_ids(element_ids.ids_from_places(measured), measured, regular)
+    rows = element_tables.tabulate_elements(measured, ids)
+    of_rooms = [rows["rooms"][name] for name in ("room", "number", "name", "use")]
+    assert of_rooms == [[0, 1], ["2.10", "A-7"], ["Bath", "Room A-7"], ["restroom", ""]]
+    model = ifcopenshell.file.from_string(ifc.format_ifc(regular, ids, catalogue=CATALOGUE))
+    spaces = [(space.Name, space.LongName) for space in model.by_type("IfcSpace")]
+    assert spaces == [("2.10", "Bath"), ("A-7", "Room A-7")]
+    units = wayfinding.imdf_layers(measured, rows)["imdf_unit"].rows
+    assert (units["name"], units["alt_name"]) == (["Bath", "Room A-7"], ["2.10", "A-7"])
+    locale = Locale(decimal=",", phrases={"No.": "Nr.", "Room": "Raum", "Room {n}": "Raum {n}"})
+    sheet = compose_presentation(measured, regular, drafted, SheetFacts(locale=locale))
+    lines = [[word.text for word in stamp.words] for stamp in sheet.stamps]
+    assert lines[0][0].startswith("Bath") and lines[0][1:] == ["12,0 m²", "Nr. 2.10, restroom"]
+    assert lines[1][0].startswith("Raum A-7")
+    (tmp_path / "plan.dxf").write_text(dxf.format_dxf(sheet))
+    read = [of for of in dxf_reading.read_dxf(tmp_path / "plan.dxf").elements if of.kind == "room"]
+    said = [(of.key, of.facts["number"], of.facts["name"]) for of in read]
+    assert said == [("0", "2.10", "Bath"), ("1", "A-7", "Raum A-7")]
+
+
+def test_a_room_that_is_parted_or_joined_keeps_its_number_once(tmp_path):
+    numbered = '{element: room, at: [1, 1], number: "1"}'
+    parted, _ = corrected(
+        tmp_path, "{element: room, action: split, line: [[2, 0], [2, 3]]}", numbered
+    )
+    assert sorted(parted.rooms["number"].tolist()) == ["", "", "1"]
 
 
 def test_an_opening_that_is_added_may_swing(tmp_path):

@@ -87,7 +87,7 @@ def _list_elements(document: Document, per_unit_m: float) -> Iterator[Element]:
         facts = read_facts(entity)
         if isinstance(entity, Insert):
             if entity.dxf.name.startswith(STAMP):
-                yield _read_stamp(document, entity)
+                yield _read_stamp(document, entity, facts)
             elif "opening" in facts or entity.dxf.name.removesuffix(AJAR) in KINDS:
                 yield _read_opening(entity, facts, per_unit_m)
         elif isinstance(entity, LWPolyline):
@@ -138,13 +138,15 @@ def _read_opening(insert: Insert, facts: dict[str, Any], per_unit_m: float) -> E
     return Element("opening", key, line_m, facts=said)
 
 
-def _read_stamp(document: Document, insert: Insert) -> Element:
+def _read_stamp(document: Document, insert: Insert, known: dict[str, Any]) -> Element:
     """Return a room by its attributes, or by the text of its block where that was edited."""
     tags = {attribute.dxf.tag: attribute.dxf.text for attribute in insert.attribs}
     block = document.blocks[insert.dxf.name]
     texts = [entity.dxf.text for entity in block if entity.dxftype() == "TEXT"]
-    facts = {"name": tags.get("NAME", ""), "shown": texts[0] if texts else ""}
-    return Element("room", tags.get("NUMBER", insert.dxf.handle), facts=facts)
+    number = tags.get("NUMBER", "")
+    facts = {"name": tags.get("NAME", ""), "shown": texts[0] if texts else "", "number": number}
+    # stamps of older releases state the plan's own number alone
+    return Element("room", str(known.get("room", number or insert.dxf.handle)), facts=facts)
 
 
 def _find_hosts(elements: list[Element]) -> list[Element]:

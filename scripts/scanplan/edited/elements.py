@@ -27,8 +27,8 @@ class Element:
         Of furniture.
     facts : mapping
         As far as the file has them: `thickness_m`, `height_m` of walls; `kind`, `sill_m`,
-        `lintel_m` and `opens_m`, where the free end of an open leaf is, of openings; `name`, `use`
-        of rooms; `kind` of furniture.
+        `lintel_m` and `opens_m`, where the free end of an open leaf is, of openings; `number`,
+        `name`, `use` of rooms; `kind` of furniture.
     host : str
         Of an opening: the key of its wall, where the file knows it.
     is_bent : bool

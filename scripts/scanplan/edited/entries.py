@@ -12,7 +12,7 @@ from scanplan.edited.base import EditedPlan, find_number
 from scanplan.edited.differences import Change, align, list_changed
 from scanplan.edited.elements import Element
 from scanplan.plan import floorplan
-from scanplan.plan.corrections import added, things
+from scanplan.plan.corrections import added, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.project import corrections_file
 from scanplan.project.correction_values import CORNERS
@@ -202,9 +202,6 @@ def _change(plan: EditedPlan, change: Change, row: Row, old: Entry | None) -> En
         kept.pop("width_m")
     if "width_m" in more and "line" in kept:
         more["line"] = _widen(kept["line"], more.pop("width_m"))
-    if "name" in more:
-        # the new name is all of it
-        kept.pop("number", None)
     at = {} if "at" in kept or "action" in kept else {
         "at": _at(plan, change.kind, row[change.kind], old)
     }  # fmt: skip
@@ -238,7 +235,7 @@ def _say_room(after: Element, names: Sequence[str]) -> Entry:
     said: Entry = {}
     if "shown" in names and "name" not in names:
         said["name"] = _MARKS.sub("", after.facts["shown"])
-    said |= {name: after.facts[name] for name in ("name", "use") if name in names}
+    said |= {name: after.facts[name] for name in outlines.SAID if name in names}
     return {name: value for name, value in said.items() if value}
 
 

@@ -180,6 +180,7 @@ def _virtual(frames: _Frames, bound: Any) -> Element:
 
 def _room(space: Any) -> Element:
     facts = {"name": str(space.LongName or space.Name or ""), "use": str(space.ObjectType or "")}
+    facts |= {"number": str(space.Name or "")} if space.LongName else {}
     return Element("room", space.GlobalId, facts=facts)
 
 

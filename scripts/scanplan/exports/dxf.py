@@ -165,6 +165,7 @@ class _Plan:
         insert = self._space.add_blockref(block.name, place, dxfattribs={"layer": layer})
         for tag in dxf_document.STAMP_TAGS:
             self._add_attribute(insert, tag, stamp.facts[tag], place, layer)
+        _attach_facts(insert, {"room": stamp.room})
 
     def _add_dimension(self, dimension: Dimension) -> None:
         start, end = dimension.ends_m

@@ -422,11 +422,24 @@ class FloorPlan:
         return np.array(parts, object)
 
     @cached_property
+    def room_numbers(self) -> list[str]:
+        """What number each room has, (r,): the one given by hand, or that of its row's key."""
+        own = self.rooms["room"].tolist()
+        given = self.rooms.get("number", np.full(len(own), "", object))
+        return [str(number or n) for number, n in zip(given, own, strict=True)]
+
+    @cached_property
     def room_names(self) -> list[str]:
         """What each room is called, (r,): the name given by hand, or its number."""
-        numbers = self.rooms["room"].tolist()
-        given = self.rooms.get("name", np.full(len(numbers), "", object))
-        return [name or f"Room {n}" for name, n in zip(given, numbers, strict=True)]
+        given = self.rooms.get("name", np.full(len(self.room_numbers), "", object))
+        return [name or f"Room {n}" for name, n in zip(given, self.room_numbers, strict=True)]
+
+    @cached_property
+    def room_labels(self) -> list[str]:
+        """What each room is told by, (r,): its name, behind the number that somebody gave it."""
+        given = self.rooms.get("number", np.full(len(self.room_names), "", object))
+        named = zip(given, self.rooms.get("name", given), self.room_names, strict=True)
+        return [f"{number} {name}" if number and own else name for number, own, name in named]
 
     @cached_property
     def label_widths_m(self) -> FloatArray:

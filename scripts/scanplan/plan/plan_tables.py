@@ -205,7 +205,7 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
             "y_m": y_m,
             "closed": room.closed,
             "n_scans": room.n_scans,
-            **dict.fromkeys(("name", "use", "corrected"), ""),
+            **dict.fromkeys(("number", "name", "use", "corrected"), ""),
             "geometry": shapely.to_wkb(room.polygon),
         }
         rows.append(row)

@@ -115,7 +115,7 @@ def face_table(plan: floorplan.FloorPlan) -> PageTable:
 
 def opening_table(plan: floorplan.FloorPlan) -> PageTable:
     """Return the table of openings and of the rooms that each joins."""
-    name_of = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
+    name_of = dict(zip(plan.rooms["room"].tolist(), plan.room_labels, strict=True))
     rows = [
         Row([
             number_cell(at["opening"], 0),
@@ -142,7 +142,7 @@ def room_table(plan: floorplan.FloorPlan) -> PageTable:
     rows = [
         Row([
             number_cell(at["room"], 0),
-            Cell(plan.room_names[i]),
+            Cell(plan.room_labels[i]),
             _doubt("room", plan.rooms, i),
             number_cell(at["area_m2"], 2),
             number_cell(at["perimeter_m"], 2),

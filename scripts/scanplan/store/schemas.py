@@ -316,19 +316,19 @@ CHECKED = ("kept by hand", "checked by hand")
 """How column `corrected` begins where a person has looked, and changed nothing."""
 ROOMS = Schema(
     "rooms",
-    3,
+    4,
     {
         "room": "int32",
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
-        **dict.fromkeys(("name", "use", "corrected"), "string"),
+        **dict.fromkeys(("number", "name", "use", "corrected"), "string"),
         "geometry": "binary",
     },
     ("room",),
     geometry=True,
 )
-"""Rooms: `name` and `use` are what a person calls them, empty where nobody has."""
+"""Rooms: `number`, `name` and `use` are what a person calls them, empty where nobody has."""
 FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 

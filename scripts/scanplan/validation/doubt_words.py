@@ -61,7 +61,7 @@ def say_where(plan: FloorPlan, room: int, place_m: FloatArray | None) -> str:
     """
     if room < 0:
         return "outside the known rooms"
-    name = plan.room_names[room]
+    name = plan.room_labels[room]
     if place_m is None:
         return name
     middle_m = np.array([plan.rooms["x_m"][room], plan.rooms["y_m"][room]])

@@ -94,7 +94,7 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
     found = [
         *_doubts_of(plan, "opening", plan.openings, [f"{k} {n}".capitalize() for k, n in numbered]),
         *_doubts_of(plan, "wall", plan.walls, [f"Wall {n}" for n in plan.walls["wall"].tolist()]),
-        *_doubts_of(plan, "room", plan.rooms, plan.room_names),
+        *_doubts_of(plan, "room", plan.rooms, plan.room_labels),
         *_doubts_of(plan, "face", faces, [f"Face {n} of wall {w}" if w >= 0 else f"Face {n}"
                                           for n, w in sides]),
     ]  # fmt: skip
@@ -136,7 +136,7 @@ def list_nearly(plan: FloorPlan) -> list[Doubt]:
                 reason=f"p {near.p:.2f}",
                 about=EXISTENCE,
                 question=doubt_words.ask(near.kind, NEARLY, size_m, where),
-                room=plan.room_names[at] if at >= 0 else "",
+                room=plan.room_labels[at] if at >= 0 else "",
                 place_m=place_m,
                 cost=_COSTS[near.kind] * near.p,
             )
@@ -221,7 +221,7 @@ def _doubts_of(
                 _measure_m(kind, columns, row),
                 doubt_words.say_where(plan, at, None if kind == "room" else place_m),
             ),
-            room=plan.room_names[at] if at >= 0 else "",
+            room=plan.room_labels[at] if at >= 0 else "",
             place_m=place_m,
             cost=_PART_COST if about in _PARTS else cost,
         )

@@ -79,7 +79,7 @@ def judge_plan(plan: FloorPlan) -> Verdict:
         return Verdict(PLAN, gist)
     open_rows = np.flatnonzero(~closed)
     widest = open_rows[np.argsort(-areas_m2[open_rows], kind="stable")][:MOST_NAMED]
-    named = ", ".join(plan.room_names[row] for row in sorted(widest.tolist()))
+    named = ", ".join(plan.room_labels[row] for row in sorted(widest.tolist()))
     more = " and others" if len(open_rows) > len(widest) else ""
     return Verdict(
         SKETCH,

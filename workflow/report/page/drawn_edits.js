@@ -100,7 +100,7 @@
       draw("outside", shape(element));
       relabel(element, "outside", true);
     } else if (entry.name || entry.number) {
-      relabel(element, [entry.number, entry.name].filter(Boolean).join(" "));
+      relabel(element, entry.name ? [entry.number, entry.name].filter(Boolean).join(" ") : `Room ${entry.number}`);
     }
   }
   // what stands about, what was taped, and how leaves stand open

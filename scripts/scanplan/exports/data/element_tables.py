@@ -42,7 +42,7 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
         how many doors and passages they have, and how wide the widest is. Numbers are Python's;
         None where not known, or for no wall or room.
     """
-    names = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
+    names = dict(zip(plan.rooms["room"].tolist(), plan.room_labels, strict=True))
     walls = _plain(plan.walls, ids["wall"])
     walls["length_m"] = np.round(plan.lengths_m, 4).tolist()
     walls["height_m"] = np.round(plan.heights_m, 4).tolist()
@@ -51,7 +51,7 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     for side in ("a", "b"):
         openings[f"room_{side}_name"] = [names.get(room) for room in openings[f"room_{side}"]]
     rooms = _plain(plan.rooms, ids["room"])
-    rooms["name"] = list(plan.room_names)
+    rooms |= {"number": list(plan.room_numbers), "name": list(plan.room_names)}
     height_m = _known("height_m", plan.least_height_m)
     is_ceiling = plan.height_from == "ceiling"
     rooms["height_m"] = [height_m if is_ceiling else None] * len(plan.room_names)

@@ -184,7 +184,7 @@ def list_solids(plan: FloorPlan) -> Iterator[Solid]:
             yield Solid("opening", number, row, name, colour_of(plan.openings, row, kind), leaf)
     for row, area in enumerate(plan.areas):
         number = plan.rooms["room"][row].item()
-        yield Solid("room", number, row, plan.room_names[row], "slab", _flat(area, 0.0))
+        yield Solid("room", number, row, plan.room_labels[row], "slab", _flat(area, 0.0))
 
 
 def _about(global_id: str, columns: Columns, row: int) -> dict[str, str]:

@@ -58,6 +58,7 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
         "category": [_categorise(use) for use in plan.rooms["use"]],
         "level_id": [level_id] * len(plan.areas),
         "name": rooms["name"],
+        "alt_name": [str(number) or None for number in plan.rooms["number"]],
         "global_id": rooms["global_id"],
     }
     doors: Rows = {
@@ -106,8 +107,7 @@ def format_imdf(
 def _make_feature(shape: BaseGeometry, values: dict[str, Any]) -> geojson.Feature:
     """Return a feature as IMDF has it: its type beside its properties, names by language."""
     own = {"id": values.pop("id"), "feature_type": values.pop("feature_type")}
-    if "name" in values:
-        values["name"] = {"en": values["name"]}
+    values |= {key: {"en": values[key]} for key in ("name", "alt_name") if values.get(key)}
     if "door_type" in values:
         values["door"] = {"type": values.pop("door_type"), "automatic": False, "material": None}
         values["accessibility"] = [values["accessibility"]] if values["accessibility"] else None

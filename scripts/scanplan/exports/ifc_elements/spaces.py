@@ -103,7 +103,7 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     space = model.known(
         "IfcSpace",
         storey.ids["room"][row],
-        Name=str(columns["room"][row]),
+        Name=plan.room_numbers[row],
         LongName=plan.room_names[row],
         ObjectType=str(columns["use"][row]) or None,
         ObjectPlacement=_on_floor(model),

@@ -78,7 +78,7 @@ class StoreyPlan:
 
     def name_joined_rooms(self, opening: int) -> list[str]:
         """Return the names of the rooms on both sides of an opening, each once; it may have one."""
-        names = dict(zip(self.plan.rooms["room"].tolist(), self.plan.room_names, strict=True))
+        names = dict(zip(self.plan.rooms["room"].tolist(), self.plan.room_labels, strict=True))
         columns = self.plan.openings
         rooms = dict.fromkeys(int(columns[side][opening]) for side in ("room_a", "room_b"))
         return [names[room] for room in rooms if room in names]

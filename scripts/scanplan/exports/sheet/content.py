@@ -73,7 +73,7 @@ def draw_rooms(plan: FloorPlan) -> Iterator[Mark]:
     """Yield the rooms, in the order of their table."""
     doubtful = doubts.find_doubtful_rooms(plan)
     for row, area in enumerate(plan.areas):
-        room, name = plan.rooms["room"][row], clean_text(plan.room_names[row])
+        room, name = plan.rooms["room"][row], clean_text(plan.room_labels[row])
         facts = {"name": name, **facts_of("room", plan.rooms, row)}
         is_doubted = bool(doubtful[row])
         yield draw_area("room", area, f"room-{room}", name, facts, verify=is_doubted, of=plan)

@@ -170,11 +170,14 @@ class Stamp:
     facts : dict of str to str
         `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, `CORRECTED`, `USE`, as text.
     verify : bool
+    room : int
+        Its number in the plan's table, which `NUMBER` is where nobody gave it another.
     """
 
     words: list[Word]
     facts: dict[str, str]
     verify: bool = False
+    room: int = -1
 
 
 def straight(points: FloatArray) -> FloatArray:

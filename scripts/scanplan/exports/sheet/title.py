@@ -36,6 +36,7 @@ _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
 # values that are names, in no language
 _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
 _NAMES += ("Earliest", "Latest")
+_NUMBER_MM = 6.0  # of the column of rooms' numbers, or as wide as one that somebody gave
 _UNSEEN = "-"  # instead of a size that nobody saw
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
 
@@ -271,7 +272,7 @@ def draw_room_table(
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
     if all(of_room[-1] == _UNSEEN for of_room in sizes):
         names, sizes = names[:-1], [of_room[:-1] for of_room in sizes]
-    ends = _end_columns(names, sizes)
+    ends = _end_columns(names, [stamp.facts["NUMBER"] for stamp in stamps], sizes)
     name_mm = _name_width_mm(ends, sizes)
     yield from _heads(slots, names, ends)
     for stamp, of_room, (x, y) in zip(stamps, sizes, _row_places(slots), strict=True):
@@ -300,7 +301,9 @@ def _list_sizes(stamp: Stamp, locale: Locale) -> list[str]:
     return [*sizes, locale.say(height.replace("not seen", _UNSEEN))]
 
 
-def _end_columns(heads: Sequence[str], sizes: Sequence[Sequence[str]]) -> list[float]:
+def _end_columns(
+    heads: Sequence[str], numbers: Sequence[str], sizes: Sequence[Sequence[str]]
+) -> list[float]:
     """Return where columns of the table of rooms begin, or end from the third on, millimetres.
 
     Those of sizes end at the right, each as wide as what stands in it.
@@ -310,7 +313,8 @@ def _end_columns(heads: Sequence[str], sizes: Sequence[Sequence[str]]) -> list[f
         texts = [heads[column], *(of_room[column - 2] for of_room in sizes)]
         width = max(measure_width_mm(text, Letters.SMALL) for text in texts)
         ends.insert(0, ends[0] - width - 2 * Paper.GAP)
-    return [0.0, 6.0, *ends]
+    number_mm = max((measure_width_mm(of, Letters.SMALL) for of in numbers), default=0.0)
+    return [0.0, max(_NUMBER_MM, number_mm + Paper.GAP), *ends]
 
 
 def _name_width_mm(ends: Sequence[float], sizes: Sequence[Sequence[str]]) -> float:

@@ -41,7 +41,7 @@ def stamp_rooms(
         area = f"{about}{page.locale.area(float(rooms['area_m2'][row]))}"
         name = clean_text(_name_room(page, plan, row))
         facts = {
-            "NUMBER": str(number),
+            "NUMBER": clean_text(plan.room_numbers[row]),
             "NAME": name,
             "AREA": area,
             "PERIMETER": f"{about}{page.locale.girth(float(rooms['perimeter_m'][row]))}",
@@ -55,20 +55,22 @@ def stamp_rooms(
         title = shorten_text(name, Letters.MEDIUM, Paper.NAME)
         marks = " *" * int(corrected[row]) + " ?" * int(doubtful[row])
         title += marks
-        label = f"{number}{marks}"
+        label = f"{facts['NUMBER']}{marks}"
         # a name that a person gave does not say the number that tables have
-        known_by = f"{page.locale.say('No.')} {number}" * bool(_said_of(plan, "name", row))
+        is_named = bool(_said_of(plan, "name", row))
+        known_by = f"{page.locale.say('No.')} {facts['NUMBER']}" * is_named
         use = shorten_text(", ".join(filter(None, [known_by, facts["USE"]])), *_DETAIL)
         small = [page.locale.say(area), *([use] if use else [])]
         chosen = space.place(_stamp_places(outline, middle, title, small, label, number))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
-        stamps[row] = Stamp(words, facts, bool(doubtful[row]))
+        stamps[row] = Stamp(words, facts, bool(doubtful[row]), number)
     return [stamps[row] for row in sorted(stamps)]
 
 
 def _name_room(page: Page, plan: FloorPlan, row: int) -> str:
-    """Return the name that a person gave a room, or its number in the sheet's language."""
-    return _said_of(plan, "name", row) or page.locale.say(plan.room_names[row])
+    """Return the name that a person gave a room, or its number below the language's word."""
+    named = f"{page.locale.say('Room')} {plan.room_numbers[row]}"
+    return _said_of(plan, "name", row) or named
 
 
 def _said_of(plan: FloorPlan, column: str, row: int) -> str:

@@ -177,8 +177,8 @@ def state_said(correction: Correction) -> str:
 
 
 def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
-    room["name"] = " ".join(filter(None, [correction.number, correction.name or room["name"]]))
-    room["use"] = correction.use or room["use"]
+    for column in outlines.SAID:
+        room[column] = getattr(correction, column) or room[column]
 
 
 def _change_thing(rows: PlanRows, thing: Row, correction: Correction) -> None:

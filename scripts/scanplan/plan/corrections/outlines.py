@@ -13,6 +13,8 @@ from scanplan.plan.corrections.rows import PlanRows, Row
 from scanplan.store import schemas
 from scanplan.types import FloatArray
 
+SAID = ("number", "name", "use")
+"""Columns of what a person calls a room."""
 _THICKEST_M = 1.0
 """Between rooms that are one: no more than the thickest wall that may have been drawn there."""
 _HAIR_M = 1e-6  # above rounding, and nothing on paper
@@ -56,7 +58,7 @@ def split_room(
     number, first = room["room"], rows.next_number("room")
     numbers = [number, *range(first, first + len(parts) - 1)]
     for part, other in zip(parts[1:], numbers[1:], strict=True):
-        own = {"room": other, "name": "", "use": "", "corrected": said}
+        own = {"room": other, **dict.fromkeys(SAID, ""), "corrected": said}
         rows.rooms.append(room | own | shape_columns(part))
     room |= shape_columns(parts[0]) | {"corrected": said}
     shapes = np.array(parts, object)
@@ -116,7 +118,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
         return "is parted from the other room by a wall; remove that, too"
     room |= shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
     room |= {"closed": room["closed"] and other["closed"], "corrected": said}
-    room |= {said: room[said] or other[said] for said in ("name", "use")}
+    room |= {said: room[said] or other[said] for said in SAID}
     room["n_scans"] = max(room["n_scans"], other["n_scans"])
     rows.rooms.remove(other)
     for opening in rows.openings:

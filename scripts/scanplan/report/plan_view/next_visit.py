@@ -74,7 +74,7 @@ def name_questions(plan: floorplan.FloorPlan, questions: Columns) -> Array:
     """Return what each question (q,) is about, in words."""
     kinds = zip(plan.openings["opening"].tolist(), plan.openings["type"].tolist(), strict=True)
     openings = {number: f"{kind} {number}" for number, kind in kinds}
-    rooms = dict(zip(plan.rooms["room"].tolist(), plan.room_names, strict=True))
+    rooms = dict(zip(plan.rooms["room"].tolist(), plan.room_labels, strict=True))
     names = []
     for kind, number in zip(questions["kind"], questions["number"].tolist(), strict=True):
         opening = openings.get(number, f"opening {number}")

@@ -152,7 +152,7 @@ def draw_image(points: PointImage) -> str:
 def draw_labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Write each room's name and area; its width says how much of them there is room for."""
     rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
-    named = plan.room_names, *rooms, plan.label_widths_m.tolist()
+    named = plan.room_labels, *rooms, plan.label_widths_m.tolist()
     for name, room, area_m2, closed, x_m, y_m, width_m in zip(*named, strict=True):
         place = f'x="{format_number(x_m)}" y="{format_number(-y_m)}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
