@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,9 @@ from scanplan.exports.building.dxf_storeys import format_building_dxf
 from scanplan.exports.building.ifc_storeys import merge_ifc
 from scanplan.exports.building.placed_storey import PlacedStorey
 from scanplan.exports.building.sheet_set import compose_sheets
-from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
 from scanplan.exports.sheet.composition import Sheet
-from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import SheetFacts, summarise_survey
+from scanplan.exports.sheet.facts import gather_facts
+from scanplan.exports.sheet.locale import Locale, make_locale
 from scanplan.plan import floorplan_files
 from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import building_file, code_files
@@ -80,14 +80,12 @@ def assemble_building(
     locales = [
         make_locale(own["units"], of.get("words")) for own, of in zip(settings, told, strict=True)
     ]
-    sheets = _compose_sheets(
-        files, name, storeys, settings, [SheetFacts(version=version, locale=of) for of in locales]
-    )
+    sheets = _compose_sheets(files, name, storeys, settings, version, locales)
     figures = [drawing.draw_sheet(sheet) for sheet in sheets]
     atomic.write_text(outputs["ifc"], merge_ifc(name, placed))
     drawn = format_building_dxf(placed, sheets, settings[0]["dxf_unit"], told[0].get("layers"))
     atomic.write_text(outputs["dxf"], drawn)
-    pages = figure_files.format_pdf(figures, f"Floor plans of {name}")
+    pages = figure_files.format_pdf(figures, f"Floor plans of {name}", sheets[0].facts.answerable)
     atomic.write_bytes(outputs["pdf"], pages)
     heights = ", ".join(
         f"{storey['name']} at {elevation_m:.2f} m"
@@ -102,27 +100,21 @@ def _compose_sheets(
     name: str,
     storeys: Sequence[Mapping[str, Any]],
     settings: Sequence[Settings],
-    common: Sequence[SheetFacts],
+    version: str,
+    locales: Sequence[Locale],
 ) -> list[Sheet]:
-    """Return a sheet of each storey, with the names that the building gives it.
-
-    Parameters
-    ----------
-    common : sequence of SheetFacts
-        The software and the locale of each storey's sheet.
-    """
+    """Return a sheet of each storey, with the names that the building gives it."""
     plans, facts = [], []
     for number, (storey, own) in enumerate(zip(storeys, settings, strict=True)):
         paths = {table: files[table][number] for table in files if table != "ifc"}
         assumed_m = {key: own[key] for key in ("assumed_thickness_m", "assumed_height_m")}
-        plan = floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m)
-        plans.append(scale_floorplan(plan))
+        in_map = floorplan_files.read_floorplan(paths, storey["dataset"], **assumed_m)
+        plan = scale_floorplan(in_map)
         evidence = tables.read_table(paths["evidence"], schemas.EVIDENCE, allow_empty=True)
-        stated = {"project": own["project"] or name, "storey": storey["name"]}
-        stated |= {"version": common[number].version, "locale": common[number].locale}
-        sheet = {"number": number + 1, "of": len(storeys)}
-        sensor = SensorErrors(own["range_offset_sigma_m"], CLOCKS_SIGMA)
-        facts.append(summarise_survey(evidence, **stated, **sheet, sensor=sensor))
+        known = gather_facts(evidence, plan, own, locales[number], version)
+        stated = {"project": known.project or name, "storey": storey["name"]}
+        facts.append(replace(known, **stated, number=number + 1, of=len(storeys)))
+        plans.append(plan)
     rotations_rad = [
         math.radians(storey["place"][2]) if storey["aligned"] else None for storey in storeys
     ]

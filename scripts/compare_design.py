@@ -9,8 +9,8 @@ from scanplan.design import as_built, design_reading, deviation_table, deviation
 from scanplan.exports import drawing, svg
 from scanplan.exports.changes import change_geojson, compared_sheet, design_sheet
 from scanplan.exports.data import element_tables
+from scanplan.exports.sheet.facts import summarise_survey
 from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import summarise_survey
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log
 from scanplan.store import atomic, schemas, tables

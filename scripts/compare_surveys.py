@@ -6,8 +6,8 @@ from typing import Any
 from scanplan.changes import change_table, comparison, survey_files
 from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.changes import change_geojson, change_sheet, compared_sheet
+from scanplan.exports.sheet.facts import summarise_survey
 from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import summarise_survey
 from scanplan.project import code_files
 from scanplan.report import changes_page
 from scanplan.stage import figure_files, log

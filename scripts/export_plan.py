@@ -7,11 +7,10 @@ from typing import Any
 from scanplan.errors import MOST_NAMED
 from scanplan.exports import drawing, dxf, geojson, grid_map, svg
 from scanplan.exports.model_origin import find_site
-from scanplan.exports.sheet import composition, title
-from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
+from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.facts import gather_facts
 from scanplan.exports.sheet.lettering import list_unknown
 from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan import floorplan, floorplan_files
 from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import code_files
@@ -56,15 +55,7 @@ def export_plan(
     drawn = scale_floorplan(in_map)
     site = find_site(drawn.georeference, settings["site"])
     locale = make_locale(settings["units"], told.get("words"))
-    facts = summarise_survey(
-        evidence,
-        project=settings["project"] or "",
-        storey=settings["storey"] or "",
-        version=version,
-        sensor=SensorErrors(settings["range_offset_sigma_m"], CLOCKS_SIGMA),
-        locale=locale,
-        frame=title.state_frame(site, drawn.georeference, locale),
-    )
+    facts = gather_facts(evidence, drawn, settings, locale, version)
     turn_deg = None if settings["turn"] else 0.0
     sheet = composition.compose_sheet(drawn, facts, turn_deg=turn_deg)
     figure = drawing.draw_sheet(sheet)
@@ -75,7 +66,7 @@ def export_plan(
     atomic.write_text(outputs["dxf"], cad)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     heading = f"Floor plan of {sheet.name}"
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], heading))
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], heading, facts.answerable))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))
     atomic.write_text(outputs["yaml"], grid_map.format_map_yaml(grid, Path(outputs["pgm"]).name))

@@ -8,9 +8,8 @@ from scanplan.exports import drawing, dxf, svg
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.model_origin import find_site
-from scanplan.exports.sheet.accuracy import CLOCKS_SIGMA, SensorErrors
+from scanplan.exports.sheet.facts import gather_facts
 from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import state_frame, summarise_survey
 from scanplan.plan import floorplan_files
 from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.project import code_files
@@ -52,16 +51,8 @@ def export_presentation(
     measured = scale_floorplan(in_map)
     site = find_site(measured.georeference, settings["site"])
     locale = make_locale(settings["units"], told.get("words"))
-    facts = summarise_survey(
-        tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True),
-        project=settings["project"] or "",
-        storey=settings["storey"] or "",
-        version=version,
-        sensor=SensorErrors(settings["range_offset_sigma_m"], CLOCKS_SIGMA),
-        north_deg=site.north_deg,
-        locale=locale,
-        frame=state_frame(site, measured.georeference, locale),
-    )
+    evidence = tables.read_table(plan["evidence"], schemas.EVIDENCE, allow_empty=True)
+    facts = gather_facts(evidence, measured, settings, locale, version)
     drafting = make_draft_settings(settings["max_change_m"], catalogue)
     regular, drafted = draft_plan(measured, drafting)
     turn_deg = None if settings["turn"] else 0.0
@@ -71,8 +62,9 @@ def export_presentation(
     figures = [drawing.draw_sheet(page) for page in (sheet, overview) if page is not None]
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
     title = f"Floor plan of {sheet.name}"
-    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title))
-    tiles = figure_files.format_pdf(drawing.draw_tiles(sheet), f"{title}, on A3")
+    atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title, facts.answerable))
+    tiled = drawing.draw_tiles(sheet)
+    tiles = figure_files.format_pdf(tiled, f"{title}, on A3", facts.answerable)
     atomic.write_bytes(outputs["tiles"], tiles)
     atomic.write_bytes(outputs["png"], figure_files.format_png(figures[0]))
     cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)

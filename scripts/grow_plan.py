@@ -11,8 +11,8 @@ from scanplan.exports import drawing, dxf, geojson, svg
 from scanplan.exports.changes import compared_sheet, growth_sheet
 from scanplan.exports.data import element_ids, element_tables
 from scanplan.exports.model_origin import ModelOrigin
+from scanplan.exports.sheet.facts import summarise_survey
 from scanplan.exports.sheet.locale import make_locale
-from scanplan.exports.sheet.title import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.project import code_files
 from scanplan.stage import figure_files, log

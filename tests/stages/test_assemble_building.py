@@ -19,7 +19,7 @@ from helpers.default_settings import SETTINGS
 from helpers.refusals import refused
 from helpers.report_making import registration
 from scanplan.exports.building.sheet_set import compose_sheets
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.plan import planning
 from scanplan.project import stage_settings, words_file
 from scanplan.store import schemas, tables

@@ -14,6 +14,7 @@ from scanplan.store import schemas, tables
 SETTINGS = {
     "assumed_thickness_m": 0.1, "assumed_height_m": 2.5, "map_cell_m": 0.05,
     "turn": True, "project": None, "storey": None, "dxf_unit": "mm",
+    "author": "A. Bee", "organisation": None,
     "units": "m", "site": {},
     "range_offset_sigma_m": 0.01, "range_scale_sigma": 0.0002,
 }  # fmt: skip
@@ -55,7 +56,9 @@ def test_all_files_hold_the_same_plan(plan, tmp_path):
     assert len(ezdxf.readfile(files["dxf"]).modelspace().query('LWPOLYLINE[layer=="A-AREA"]')) == 2
     drawn = {e.get("id") for e in ElementTree.parse(files["svg"]).iter()}
     assert {"door-0", "door-1", "window-2"} <= drawn
-    assert files["pdf"].read_bytes().startswith(b"%PDF")
+    content = files["pdf"].read_bytes()
+    assert content.startswith(b"%PDF") and b"A. Bee" in content
+    assert "A. Bee" in files["svg"].read_text()
     with Image.open(files["png"]) as picture:
         assert picture.size == (1753, 1240)  # 150 dots an inch of A4
     about = yaml.safe_load(files["yaml"].read_text())

@@ -1,5 +1,7 @@
 """The stage that writes the regular drawing, at the plan drawn by hand."""
 
+import re
+
 import ezdxf
 import numpy as np
 import pytest
@@ -69,6 +71,15 @@ def test_north_is_drawn_where_it_is_known(tmp_path):
     site = SETTINGS["plan"]["export"]["site"] | {"north_deg": 90.0}
     drawn = exported(tmp_path, site=site)["svg"].read_text()
     assert 'id="axis-N"' in drawn and 'id="axis-x"' not in drawn
+    assert "true north" in drawn and "grid north" not in drawn
+
+
+def test_who_answers_for_a_plan_stands_on_its_sheet_and_in_its_pdf(tmp_path):
+    made = exported(tmp_path, author="A. Bee", organisation="Bee, Room & Co.")
+    drawn = made["svg"].read_text()
+    assert {"A. Bee", "Bee, Room &amp; Co."} <= {*re.findall(r">([^<]+)<", drawn)}
+    for name in ("pdf", "tiles"):
+        assert b"A. Bee, Bee, Room & Co." in made[name].read_bytes()
 
 
 def test_faces_alone_are_enough(tmp_path):

@@ -17,7 +17,7 @@ from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports import drawing, svg
 from scanplan.exports.sheet import composition, lettering
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.stage import figure_files
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"

@@ -15,10 +15,10 @@ from helpers import floorplan_making
 from helpers.floorplan_making import FOOTPRINT_M2, bare, plan
 from scanplan.exports import dxf
 from scanplan.exports.sheet import composition
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.lettering import clean_text
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.styles import LAYERS
-from scanplan.exports.sheet.title import SheetFacts
 
 
 def reopened(drawn, unit="m", facts=None):

@@ -15,12 +15,12 @@ from scanplan.exports.drafting.presentation import compose_overview, compose_pre
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import compose_sheet
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.lettering import measure_width_mm
 from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Paper
-from scanplan.exports.sheet.title import SheetFacts
 from scanplan.project.words_file import read_layers, read_words
 
 SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)

@@ -13,9 +13,9 @@ from scanplan.exports.drafting import fixtures
 from scanplan.exports.drafting.presentation import compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.ifc_elements import furniture as ifc_furniture
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.openings import find_swings
-from scanplan.exports.sheet.title import SheetFacts
 from scanplan.plan.corrections import applying, rows
 from scanplan.project import corrections_file
 from scanplan.project.corrections_file import read_corrections

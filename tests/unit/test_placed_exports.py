@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import ezdxf
 import ifcopenshell
@@ -17,7 +18,7 @@ from scanplan.exports import dxf, geojson, ifc
 from scanplan.exports.data import element_ids, element_tables, geopackage, mesh, point_cloud
 from scanplan.exports.model_origin import NOWHERE, ModelOrigin, Site, find_site
 from scanplan.exports.sheet.composition import compose_sheet, paper_words
-from scanplan.exports.sheet.title import SheetFacts, state_frame
+from scanplan.exports.sheet.facts import SheetFacts, state_frame
 from scanplan.plan.floorplan import GeoReference
 
 # Stuttgart, turned by 30 degrees
@@ -127,6 +128,21 @@ def test_the_sheet_says_where_its_frame_lies():
     words = " ".join(word.text for word in paper_words(compose_sheet(PLAN, facts)))
     assert "EPSG:25832: origin E 513000.250 N 5402000.500, x axis 30.0000° from E, scale 1" in words
     assert state_frame(NOWHERE, None) == ""
+
+
+def test_grid_north_is_drawn_where_the_map_lies_in_a_grid():
+    """Its x axis is turned by 30 degrees from east, so that north is 60 degrees from that."""
+    north = SITE.north
+    assert north is not None and NOWHERE.north is None
+    assert (north.angle_deg, north.kind) == (60.0, "grid north")
+    sheet = compose_sheet(PLAN, SheetFacts(north=north), turn_deg=0.0)
+    (arrow,) = [mark for mark in sheet.paper_marks if mark.element == "axis-N"]
+    way = np.diff(arrow.paths[0][:, :2], axis=0)[0]
+    # in the system that is straight up
+    assert np.degrees(np.arctan2(way[1], way[0])) + SITE.turn_deg == pytest.approx(90.0)
+    assert "grid north" in {word.text for word in paper_words(sheet)}
+    stated = replace(SITE, north_deg=61.5).north
+    assert stated is not None and (stated.angle_deg, stated.kind) == (61.5, "true north")
 
 
 def test_reference_points_outdo_the_settings():

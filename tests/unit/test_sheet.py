@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from helpers import floorplan_making
 from helpers.floorplan_making import bare, plan
 from scanplan.exports.sheet import accuracy, composition, content, lettering, paper, symbols
+from scanplan.exports.sheet.facts import SheetFacts, summarise_survey
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
 from scanplan.exports.sheet.marks import Word, flatten
 from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
-from scanplan.exports.sheet.title import SheetFacts, summarise_survey
 from scanplan.store import schemas
 from scanplan.store.doubts import Doubts, Finding
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
@@ -584,6 +584,18 @@ def test_the_title_block_states_the_survey():
     assert "LOA40: walls ± 3.9 mm (95 %), of which the sensor ± 0.0 mm" in said
     assert any(word.startswith("a plan: 2 of 2 rooms are closed") for word in said)
     assert {"Foyer", "Room 1", "12.0", "9.0", "14.00"} <= set(said)
+
+
+def test_people_stand_in_a_row_of_the_title_block_and_no_words_on_others():
+    facts = SheetFacts("Town hall", author="A. Bee", organisation="Bee & Partners")
+    drawn = plan(corrected_by="C. Dee, 2026-03-01")
+    page_words = composition.compose_sheet(drawn, facts).paper_words
+    words = [word for word in page_words if word.element.startswith("title:")]
+    said = {word.element.removeprefix("title:"): word.text for word in words}
+    assert (said["AUTHOR"], said["ORGANISATION"]) == ("A. Bee", "Bee & Partners")
+    assert said["CORRECTED_ON_SITE_BY"] == "C. Dee, 2026-03-01"
+    levels = sorted({round(float(word.place[1]), 3) for word in words})
+    assert np.diff(levels).min() >= Letters.SMALL
 
 
 def test_a_long_value_of_the_title_block_is_written_on_two_lines():

@@ -6,7 +6,7 @@ from scanplan.arrays.array_plan import ArrayPlan
 from scanplan.exports import drawing, dxf, geojson, svg
 from scanplan.exports.sheet import composition
 from scanplan.exports.sheet.composition import Sheet
-from scanplan.exports.sheet.title import summarise_survey
+from scanplan.exports.sheet.facts import summarise_survey
 from scanplan.stage import figure_files
 from scanplan.store import atomic
 from scanplan.types import FilePath

@@ -12,6 +12,22 @@ from scanplan.types import Array, FloatArray, Settings
 
 
 @dataclass(frozen=True)
+class North:
+    """Where north is in the map frame.
+
+    Attributes
+    ----------
+    angle_deg : float
+        From the map frame's x axis, counter-clockwise.
+    kind : str
+        `true north` or `grid north`.
+    """
+
+    angle_deg: float
+    kind: str
+
+
+@dataclass(frozen=True)
 class Site:
     """Where the map frame lies on earth.
 
@@ -38,6 +54,13 @@ class Site:
     def is_placed(self) -> bool:
         """Whether it is known where the map lies."""
         return self.crs is not None
+
+    @property
+    def north(self) -> North | None:
+        """True north where it is stated, else that of the grid the map lies in; None of neither."""
+        if self.north_deg is not None:
+            return North(self.north_deg, "true north")
+        return North(90.0 - self.turn_deg, "grid north") if self.is_placed else None
 
     @property
     def epsg(self) -> int | None:

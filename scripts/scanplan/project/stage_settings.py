@@ -65,7 +65,7 @@ _THESIS = {
 _POINTS_ONLY = ("min_range_m", "max_range_m", "deskew", "max_damaged_share")
 _ASSUMED = ("assumed_thickness_m", "assumed_height_m")
 _OF_PRESENTATION = ("catalogue", "max_change_m")
-_OF_FILES = ("formats", "author", "organisation", "cloud", *_OF_PRESENTATION)
+_OF_FILES = ("formats", "cloud", *_OF_PRESENTATION)
 """What the drawings do not depend on."""
 _MOST_CHUNKS = 1000
 """Jobs of one stage: a recording of 4,000 GB has as many by default, and no cluster more nodes."""

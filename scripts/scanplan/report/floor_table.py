@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.changes.verdicts import CHANGES, SAME, STATES
-from scanplan.exports.sheet.title import summarise_survey
+from scanplan.exports.sheet.facts import summarise_survey
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.report.templates import render_template
 from scanplan.types import BoolArray, Columns

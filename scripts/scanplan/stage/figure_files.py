@@ -22,9 +22,10 @@ def format_svg(figure: Figure) -> str:
     return text.getvalue()
 
 
-def format_pdf(figures: Sequence[Figure], title: str | None = None) -> bytes:
+def format_pdf(figures: Sequence[Figure], title: str | None = None, author: str = "") -> bytes:
     """Return figures as the pages of a PDF: bytes that are the same for the same figures."""
     metadata = {"Title": title, "CreationDate": None, "Creator": "scanplan", "Producer": None}
+    metadata |= {"Author": author} if author else {}
     from matplotlib.backends.backend_pdf import PdfPages  # 0.3 s, and most figures are SVG
 
     # 42: TrueType fonts, whose text can be searched

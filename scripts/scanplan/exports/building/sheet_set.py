@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scanplan.exports.sheet.composition import Sheet, compose_sheet
-from scanplan.exports.sheet.title import SheetFacts
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.plan.floorplan import FloorPlan
 
 

@@ -13,6 +13,7 @@ from scanplan.changes.frames import FrameTie
 from scanplan.changes.verdicts import Change
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import Sheet
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.labels import Candidate, LabelSpace
 from scanplan.exports.sheet.lettering import (
     clean_text,
@@ -24,7 +25,6 @@ from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.exports.sheet.marks import Mark, Symbol, Word, straight
 from scanplan.exports.sheet.paper import Page, Slot, choose_page
 from scanplan.exports.sheet.styles import Letters, Paper
-from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.types import FloatArray
 

@@ -13,6 +13,7 @@ from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
 from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.lettering import clean_text, wrap_lines
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Symbol
@@ -21,7 +22,6 @@ from scanplan.exports.sheet.paper import CrowdedError
 from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.symbols import choose_block
-from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.geometry.arcs import SAGITTA_M
 from scanplan.geometry.lines import left_normals

@@ -8,6 +8,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet import content, dimensions, title, words
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.labels import LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
@@ -15,7 +16,6 @@ from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page
 from scanplan.exports.sheet.shown import Shown, show_measured
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
-from scanplan.exports.sheet.title import SheetFacts
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -145,7 +145,7 @@ def lay_out(
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
         *title.draw_title_block(page, shown.titled, facts),
-        *title.draw_scale_bar(page, bar[0], facts.north_deg),
+        *title.draw_scale_bar(page, bar[0], facts.north),
         *title.draw_legend(legend, legend_slots, page.locale),
         *title.draw_notes(shown.notes, note_slots, page.locale),
         *title.draw_room_table(stamps, table_slots, page.locale),

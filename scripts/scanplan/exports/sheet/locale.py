@@ -147,12 +147,17 @@ class Locale:
             found.append((re.compile(pattern), words))
         return found
 
-    def _write(self, text: str) -> str:
+    def day(self, text: str) -> str:
+        """Return a day (2026-03-01) as it is written there; any other text as it is."""
         day = _DATE.fullmatch(text)
-        if day:
-            # a name may look like a day that is none
-            with suppress(ValueError):
-                return date(*map(int, day.groups())).strftime(self.date)
+        # a name may look like a day that is none
+        with suppress(ValueError):
+            return date(*map(int, day.groups())).strftime(self.date) if day else text
+        return text
+
+    def _write(self, text: str) -> str:
+        if (said := self.day(text)) != text:
+            return said
         if re.fullmatch(_NUMBER, text):
             return re.sub(r"(?<=\d)\.(?=\d)", self.decimal, text)
         return text

@@ -1,13 +1,12 @@
 """What stands on a sheet beside its plan: frame, title block, legend, table of rooms, scale bar."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
-from scanplan.exports.model_origin import Site
-from scanplan.exports.sheet.accuracy import SensorErrors, state_accuracy
+from scanplan.exports.model_origin import North
+from scanplan.exports.sheet.accuracy import state_accuracy
+from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.lettering import (
     clean_text,
     measure_width_mm,
@@ -15,16 +14,15 @@ from scanplan.exports.sheet.lettering import (
     shorten_text,
     wrap_text,
 )
-from scanplan.exports.sheet.locale import ENGLISH, Locale
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, straight
 from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.plan import floorplan
-from scanplan.plan.floorplan import OPENINGS, FloorPlan, GeoReference, say_count
+from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.plan.survey_scale import state_scale
-from scanplan.recordings.clocks import state_date
-from scanplan.types import Columns, FloatArray
+from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts
 from scanplan.validation.verdict import judge_plan
 
@@ -33,81 +31,12 @@ TITLE_TAG = "title:"
 Value = tuple[str, str, int]
 """Of a title block: its head, what it says, and how many of three columns it is wide."""
 _HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
-# values that are names, in no language
+# values that are names, in no language, or said already
 _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
-_NAMES += ("Earliest", "Latest")
+_NAMES += ("Earliest", "Latest", "Storey", "Author", "Organisation", "Corrected on site by")
 _NUMBER_MM = 6.0  # of the column of rooms' numbers, or as wide as one that somebody gave
 _UNSEEN = "-"  # instead of a size that nobody saw
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
-
-
-@dataclass(frozen=True)
-class SheetFacts:
-    """What a title block states beside the plan.
-
-    Attributes
-    ----------
-    project, storey : str
-        Empty where not given.
-    surveyed : str
-        Day of the survey, by the recording's stamps.
-    n_scans : int
-        Scans that the plan is made of.
-    version : str
-        Of the software.
-    number, of : int
-        Which sheet of a set of how many it is.
-    sensor : accuracy.SensorErrors
-    drawing : str
-        What kind of drawing it is.
-    north_deg : float or None
-        From the map frame's x axis to true north, counter-clockwise; None where not known.
-    locale : Locale
-        How the sheet is written.
-    frame : str
-        Where the map lies on earth; empty where not known.
-    """
-
-    project: str = ""
-    storey: str = ""
-    surveyed: str = "not known"
-    n_scans: int = 0
-    version: str = ""
-    number: int = 1
-    of: int = 1
-    sensor: SensorErrors = field(default_factory=SensorErrors)
-    drawing: str = "Floor plan, as surveyed"
-    north_deg: float | None = None
-    locale: Locale = ENGLISH
-    frame: str = ""
-
-
-def summarise_survey(evidence: Columns, **stated: Any) -> SheetFacts:
-    """Return what a title block states of the scans that a plan is made of.
-
-    Parameters
-    ----------
-    evidence : dict of str to (n,) array
-        The columns of `schemas.EVIDENCE`.
-    **stated
-        Other attributes of `SheetFacts`.
-    """
-    t_ns = evidence["t_ns"]
-    n_scans = len(np.unique(evidence["scan_id"]))
-    if len(t_ns) == 0:
-        return replace(SheetFacts(n_scans=n_scans), **stated)
-    return replace(SheetFacts("", "", state_date(int(t_ns.min())), n_scans), **stated)
-
-
-def state_frame(site: Site, measured: GeoReference | None, locale: Locale = ENGLISH) -> str:
-    """Return in words where a map lies on earth, and how well reference points agree with it."""
-    if not site.is_placed:
-        return ""
-    origin = f"origin E {site.east_m:.3f} N {site.north_m:.3f}"
-    place = f"{origin}, x axis {site.turn_deg:.4f}° from E, scale 1"
-    if measured is None:
-        return f"{site.crs}: {place}"
-    return f"{site.crs}: {place}; residual {locale.deviation(measured.residual_m)}"
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -128,8 +57,9 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
+    storey = facts.storey or page.locale.say("not named")
     rows = [
-        [("Project", facts.project or plan.name, 2), ("Storey", facts.storey or "not named", 1)],
+        [("Project", facts.project or plan.name, 2), ("Storey", storey, 1)],
         [("Drawing", f"{facts.drawing}{by_hand}", 2), ("Survey", plan.name, 1)],
         [
             ("Date of survey", facts.surveyed, 1),
@@ -148,7 +78,7 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
             ("Frame", f"{facts.frame or 'map'}, {turn}", 2),
             ("Software", facts.version or "scanplan", 1),
         ],
-        *([[("Corrected on site by", by, 3)]] if (by := _state_hands(plan)) else []),
+        *_list_people(plan, facts),
         [("Verdict", _state_verdict(plan, page.locale), 3)],
     ]
     yield from draw_block(page, rows)
@@ -160,7 +90,8 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
     x0 = x1 - 3 * Paper.COLUMN
     y1 = y0 + TITLE_ROWS * Paper.ROW
     # the last row, on the frame's thick line, is the highest
-    levels = [*np.arange(len(rows)) * -_HEIGHT_MM + y1, y0]
+    height = min(_HEIGHT_MM, (y1 - y0 - _HEIGHT_MM) / (len(rows) - 1))
+    levels = [*np.arange(len(rows)) * -height + y1, y0]
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
     for number, row in enumerate(rows):
         top, bottom = levels[number : number + 2]
@@ -178,10 +109,27 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
             x += width
 
 
-def _state_hands(plan: FloorPlan) -> str:
-    """Return who corrected a plan, and what lengths are corrected by; empty without either."""
+def _list_people(plan: FloorPlan, facts: SheetFacts) -> list[list[Value]]:
+    """Return a row of those who answer for a plan and who corrected it; none of nobody."""
+    values = {
+        "Author": facts.author,
+        "Organisation": facts.organisation,
+        "Corrected on site by": _state_hands(plan, facts.locale),
+    }
+    known = [(head, value) for head, value in values.items() if value]
+    widths = {0: (), 1: (3,), 2: (1, 2), 3: (1, 1, 1)}[len(known)]
+    row = [(head, value, width) for (head, value), width in zip(known, widths, strict=True)]
+    return [row] if row else []
+
+
+def _state_hands(plan: FloorPlan, locale: Locale) -> str:
+    """Return who corrected a plan, and what lengths are corrected by; empty without either.
+
+    Names stay as they were given.
+    """
     scaled = state_scale(plan.scale) if plan.scale and not plan.scale.fault else ""
-    return "; ".join(filter(None, [plan.corrected_by, scaled]))
+    *people, last = plan.corrected_by.split(", ")
+    return "; ".join(filter(None, [", ".join([*people, locale.day(last)]), locale.say(scaled)]))
 
 
 def _state_verdict(plan: FloorPlan, locale: Locale) -> str:
@@ -323,7 +271,7 @@ def _name_width_mm(ends: Sequence[float], sizes: Sequence[Sequence[str]]) -> flo
     return ends[2] - max(widths, default=0.0) - Paper.GAP - ends[1]
 
 
-def draw_scale_bar(page: Page, slot: Slot, north_deg: float | None = None) -> Iterator[Mark | Word]:
+def draw_scale_bar(page: Page, slot: Slot, north: North | None = None) -> Iterator[Mark | Word]:
     """Yield a scale bar, and the axes of the map frame as they lie on the sheet, or north."""
     unit_m, unit = page.locale.bar
     mm_per_unit = page.mm_per_m * unit_m
@@ -342,15 +290,15 @@ def draw_scale_bar(page: Page, slot: Slot, north_deg: float | None = None) -> It
         text = page.locale.say(f"{share * length:g}") + said
         yield _word("title", text, x + share * parts * width, y - 2.2, Letters.SMALL, 0.5)
     origin = np.array([slot.x_mm + 10.0, slot.y_mm - 4.4 * Paper.ROW])
-    yield from _draw_axes(page, origin, north_deg)
+    yield from _draw_axes(page, origin, north)
 
 
-def _draw_axes(page: Page, origin: FloatArray, north_deg: float | None) -> Iterator[Mark | Word]:
+def _draw_axes(page: Page, origin: FloatArray, north: North | None) -> Iterator[Mark | Word]:
     reach = 1.5 * Paper.ROW
     east = np.array([1.0, 0.0])
     axes = {"x": east, "y": np.array([0.0, 1.0])}
-    if north_deg is not None:
-        axes = {"N": rotation(north_deg) @ east}
+    if north is not None:
+        axes = {"N": rotation(north.angle_deg) @ east}
     for name, along in axes.items():
         direction = rotation(page.turn_deg) @ along
         side = np.array([-direction[1], direction[0]])
@@ -362,12 +310,11 @@ def _draw_axes(page: Page, origin: FloatArray, north_deg: float | None) -> Itera
         yield Mark("scale-bar", [straight(head)], True, f"axis-{name}-head")
         place = tip + 1.6 * direction
         yield Word("title", name, place, Letters.SMALL)
-    if north_deg is not None:
-        return
     turned = round(page.turn_deg, 1) + 0.0
-    notes = ["axes of the map frame", f"turned by {turned:+.1f}°", "north unknown"]
+    of_map = ["axes of the map frame", *([f"turned by {turned:+.1f}°"] if turned else [])]
+    notes = [north.kind] if north is not None else [*of_map, "north unknown"]
     x, y = origin + np.array([14.0, reach])
-    for number, note in enumerate(notes if turned else ["axes of the map frame", "north unknown"]):
+    for number, note in enumerate(notes):
         yield _word("note", page.locale.say(note), x, y - number * 3.2, Letters.SMALL)
 
 
