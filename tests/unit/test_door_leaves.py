@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from helpers import floorplan_making
-from scanplan.exports.sheet.leaves import Leaves, draw_swing, find_leaves
+from scanplan.exports.sheet.leaves import Leaves, find_leaves, hang_leaves
 from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.openings import draw_things, list_symbols
 from scanplan.exports.sheet.symbols import symbol_paths
@@ -19,6 +19,12 @@ WALL = shapely.union(shapely.box(0, -0.1, 1, 0.1), shapely.box(2, -0.1, 3, 0.1))
 
 def leaf(x, y, to_x, to_y):
     return Leaves(np.array([[[x, y], [to_x, to_y]]], float), np.zeros(1, bool))
+
+
+def draw_swing(door, seen, walls):
+    """One door as it is drawn."""
+    (drawn,) = hang_leaves([door], seen, walls)
+    return drawn
 
 
 @pytest.mark.parametrize(
@@ -98,6 +104,44 @@ def test_a_leaf_that_goes_through_a_wall_hangs_in_no_door_but_one_a_person_has_s
     assert draw_swing(DOOR, seen, walls) is DOOR
     corrected = replace(DOOR, facts={"corrected": "swing"})
     assert draw_swing(corrected, seen, walls).block == "SWING-RIGHT"
+
+
+def beside(low_m, width_m, number=1):
+    """A door further along the wall."""
+    ends_m = np.array([[low_m, 0.0], [low_m + width_m, 0.0]])
+    return Symbol("door", ends_m, 0.2, f"door-{number}", "")
+
+
+def swings(doors, *lines_m):
+    seen = Leaves(np.array(lines_m, float).reshape(-1, 2, 2), np.zeros(len(lines_m), bool))
+    return [door.block for door in hang_leaves(doors, seen, shapely.Polygon())]
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_a_leaf_hangs_in_the_one_of_two_doors_that_it_fits(order):
+    """Doors of 1.0 and 0.6 m, whose jambs are 0.1 m apart; a leaf of 0.7 m, in the middle."""
+    doors = [DOOR, beside(2.1, 0.6)]
+    found = swings([doors[row] for row in order], [(2.05, 0), (2.05, 0.7)])
+    assert [found[row] for row in order] == ["", "SWING-LEFT"]
+
+
+def test_two_leaves_hang_so_that_both_doors_have_theirs():
+    """A leaf in the middle fits both doors; the one at the first's other jamb fits it alone."""
+    doors = [DOOR, beside(2.1, 1.0)]
+    between = [(2.04, 0), (2.04, 1.1)]
+    assert swings(doors, between) == ["SWING-RIGHT", ""]
+    assert swings(doors, between, [(1.1, 0), (1.1, 1.1)]) == ["SWING-LEFT", "SWING-LEFT"]
+
+
+def test_a_leaf_much_longer_than_a_door_does_not_hang_in_it():
+    assert swings([beside(1.0, 0.8)], [(1, 0), (1, 0.9)]) == ["SWING-LEFT"]
+    assert swings([beside(1.0, 0.8)], [(1, 0), (1, 1.6)]) == [""]
+
+
+def test_both_leaves_of_a_wide_door_are_its_own():
+    wide = beside(1.0, 1.8)
+    found = swings([wide, beside(2.9, 0.9)], [(1, 0), (1, 1.0)], [(2.8, 0), (2.8, 1.0)])
+    assert found == ["SWING-2", ""]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from scanplan.exports.sheet.content import draw_furniture, facts_of, is_doubtful
-from scanplan.exports.sheet.leaves import draw_swing, find_leaves
+from scanplan.exports.sheet.leaves import find_leaves, hang_leaves
 from scanplan.exports.sheet.marks import Mark, Symbol, flatten
 from scanplan.exports.sheet.symbols import AJAR, symbol_paths
 from scanplan.geometry import overlays
@@ -54,7 +54,10 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
             facts,
             bool(doubtful[row]),
         )
-        symbols.append(draw_swing(symbol, leaves, walls) if kind == "door" else symbol)
+        symbols.append(symbol)
+    rows = [row for row, symbol in enumerate(symbols) if symbol.kind == "door"]
+    for row, door in zip(rows, hang_leaves([symbols[r] for r in rows], leaves, walls), strict=True):
+        symbols[row] = door
     return symbols
 
 
