@@ -1,6 +1,7 @@
 """Write the plan, and the way of the sensor, as files for other programs, with ids that stay."""
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -22,11 +23,13 @@ from scanplan.exports.data import (
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.grid_map import GridMap
 from scanplan.exports.model_origin import ModelOrigin, find_site
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.plan.survey_scale import find_factor
 from scanplan.project.catalogue_file import read_catalogue
+from scanplan.project.words_file import tag_language
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
@@ -42,6 +45,7 @@ def export_files(
     source: str,
     settings: Settings,
     catalogue: Mapping[str, Any] | None = None,
+    words: Mapping[str, Any] | None = None,
     version: str = "",
     unwanted: Iterable[FilePath] = (),
 ) -> None:
@@ -63,6 +67,8 @@ def export_files(
         See `stage_settings.select_files`.
     catalogue : dict, optional
         See `catalogue_file.read_catalogue`; ours if not given.
+    words : dict, optional
+        Of the receiver's language, see `words_file.read_words`; English if not given.
     version : str
         Of the code.
     unwanted : iterable of path-like
@@ -70,7 +76,7 @@ def export_files(
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
-    drawn = scale_floorplan(in_map)
+    drawn = replace(scale_floorplan(in_map), room_word=make_locale("m", words).say("Room"))
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
     ids = _identify_elements(in_map, outputs["ids"], outputs["known"], source)
@@ -103,7 +109,8 @@ def export_files(
     rows = element_tables.tabulate_elements(drawn, ids)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
-    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site, origin.storey)
+    language = tag_language(settings["language"])
+    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site, origin.storey, language)
     writers["json"] = lambda: room_graph.format_room_graph(drawn, rows)
     for what in [what for what in outputs if what in writers]:
         content = writers[what]()
@@ -224,6 +231,7 @@ if __name__ == "__main__":
             source=snakemake.params.source,
             settings=snakemake.params.settings,
             catalogue=snakemake.params.catalogue,
+            words=snakemake.params.words,
             version=f"{scanplan.__version__}, code {snakemake.params.code}",
             unwanted=snakemake.params.unwanted,
         )

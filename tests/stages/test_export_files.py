@@ -21,6 +21,7 @@ from scanplan.errors import StageError
 from scanplan.exports import grid_map
 from scanplan.plan import planning
 from scanplan.project import export_formats, stage_settings
+from scanplan.project.words_file import read_words
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
 
@@ -66,12 +67,27 @@ def plan(tmp_path):
     return paths
 
 
-def exported(plan, folder, wanted=FILES, source="a", **settings):
+def exported(plan, folder, wanted=FILES, source="a", words=None, **settings):
     outputs = {what: folder / FILES[what] for what in wanted}
     outputs |= {"ids": folder / "ids.parquet", "known": folder / "known_elements.parquet"}
     own = stage_settings.select_files(SETTINGS) | settings
-    export_files(plan, outputs, name="office", source=source, settings=own, version="abc")
+    export_files(
+        plan, outputs, name="office", source=source, settings=own, words=words, version="abc"
+    )
     return outputs
+
+
+def test_names_of_rooms_that_nobody_named_are_in_the_language_in_all_files(plan, tmp_path):
+    rooms = floorplan_making.rooms() | {"name": np.array(["Room", ""], object)}
+    tables.write_table(plan["rooms"], schemas.ROOMS, rooms)
+    wanted = ["ifc", "rooms_csv", "imdf"]
+    made = exported(plan, tmp_path / "de", wanted, words=read_words("de"), language="de")
+    assert pd.read_csv(made["rooms_csv"])["name"].tolist() == ["Room", "Raum 1"]
+    spaces = ifcopenshell.open(made["ifc"]).by_type("IfcSpace")
+    assert [space.LongName for space in spaces] == ["Room", "Raum 1"]
+    features = json.loads(made["imdf"].read_text())["features"]
+    names = [f["properties"]["name"] for f in features if f["feature_type"] == "unit"]
+    assert names == [{"de": "Room"}, {"de": "Raum 1"}]
 
 
 def exported_model(plan, folder):

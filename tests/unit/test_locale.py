@@ -4,6 +4,7 @@ import io
 import re
 
 import ezdxf
+import numpy as np
 import pytest
 
 from helpers import floorplan_making
@@ -44,6 +45,28 @@ def sheets(locale):
 def test_nothing_on_a_sheet_stays_english(language):
     for number in range(len(sheets(ENGLISH))):
         assert find_english(lambda locale, of=number: sheets(locale)[of], language) == set()
+
+
+def test_attributes_in_cad_are_in_the_unit_and_language_and_words_of_a_person_are_not():
+    measured = floorplan_making.plan()
+    measured.rooms["closed"][0] = False
+    measured.rooms["name"][0] = "Door"
+    measured.rooms["corrected"][0] = "changed by hand, no, 2026-03-01"
+    measured.openings["sill_m"][1] = np.nan
+    locale = make_locale("cm", read_words("de"))
+    sheet = compose_sheet(measured, SheetFacts(storey="Door", author="no", locale=locale))
+    space = ezdxf.filemanagement.read(io.StringIO(dxf.format_dxf(sheet))).modelspace()
+    inserts = [
+        {attribute.dxf.tag: attribute.dxf.text for attribute in insert.attribs}
+        for insert in space.query("INSERT")
+    ]
+    door = next(of for of in inserts if of.get("TAG") == "door-1")
+    assert [door[tag] for tag in ("WIDTH", "SILL", "CORRECTED")] == ["90", "nicht gesehen", "nein"]
+    room = next(of for of in inserts if of.get("NUMBER") == "0")
+    assert (room["NAME"], room["AREA"], room["CLOSED"]) == ("Door", "etwa 12,0 m²", "nein")
+    assert room["CORRECTED"] == "von Hand geändert, no, 01.03.2026"
+    values = {word.element: word.text for word in sheet.paper_words}
+    assert (values["title:STOREY"], values["title:AUTHOR"]) == ("Door", "no")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

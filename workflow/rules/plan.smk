@@ -245,6 +245,7 @@ for number, formats in enumerate(chosen_formats()):
             unwanted=files_unasked_for,
             settings=setting(stage_settings.select_files),
             catalogue=nominal_sizes,
+            words=words_of_dataset,
         script:
             "../../scripts/export_files.py"
 

@@ -130,7 +130,8 @@ class _Plan:
         facts: Facts = {"corrected": "no", **symbol.facts, **own}
         middle = self._point(symbol.ends_m.mean(axis=0))
         for tag, fact in dxf_document.SYMBOL_TAGS.items():
-            self._add_attribute(insert, tag, _format_fact(facts.get(fact)), middle, "A-ANNO-TEXT")
+            text = self._state_fact(fact, facts.get(fact))
+            self._add_attribute(insert, tag, text, middle, "A-ANNO-TEXT")
         _attach_facts(insert, {**symbol.facts, dxf_document.WALL_FACT: symbol.thickness_m})
         for kind in symbol.surrounded_by:
             around = surround_symbol(self._page, symbol) * self._scale.per_m
@@ -164,8 +165,20 @@ class _Plan:
         place = self._point(origin)
         insert = self._space.add_blockref(block.name, place, dxfattribs={"layer": layer})
         for tag in dxf_document.STAMP_TAGS:
-            self._add_attribute(insert, tag, stamp.facts[tag], place, layer)
+            text = self._state_fact(tag.casefold(), stamp.facts[tag])
+            self._add_attribute(insert, tag, text, place, layer)
         _attach_facts(insert, {"room": stamp.room})
+
+    def _state_fact(self, name: str, value: str | float | None) -> str:
+        """Return a fact in the sheet's unit and language, a person's words as they are."""
+        locale = self._page.locale
+        if isinstance(value, float):
+            return locale.length(value)
+        if name in ("number", "name", "use", "element"):
+            return str(value)
+        if name == "corrected":
+            return locale.credit(str(value))
+        return locale.say("not seen" if value is None else str(value))
 
     def _add_dimension(self, dimension: Dimension) -> None:
         start, end = dimension.ends_m
@@ -328,12 +341,6 @@ def _attach_facts(entity: DXFGraphic, facts: Facts) -> None:
             tags.append((1071, int(value)))
     if tags:
         entity.set_xdata(APPLICATION, tags)
-
-
-def _format_fact(value: str | float | None) -> str:
-    if value is None:
-        return "not seen"
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
 
 
 def _plain_text(text: str) -> str:

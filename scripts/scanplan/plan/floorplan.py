@@ -140,6 +140,8 @@ class FloorPlan:
         What speaks against all of the plan.
     nearly : sequence of plan_wall.Nearly
         What was nearly drawn.
+    room_word : str
+        What stands before the number of a room that nobody has named, in the receiver's language.
     """
 
     name: str
@@ -162,6 +164,7 @@ class FloorPlan:
     scale: SurveyScale | None = None
     doubted: Doubts = NO_DOUBT
     nearly: Sequence[Nearly] = ()
+    room_word: str = "Room"
 
     @property
     def mark(self) -> str:
@@ -432,7 +435,8 @@ class FloorPlan:
     def room_names(self) -> list[str]:
         """What each room is called, (r,): the name given by hand, or its number."""
         given = self.rooms.get("name", np.full(len(self.room_numbers), "", object))
-        return [name or f"Room {n}" for name, n in zip(given, self.room_numbers, strict=True)]
+        named = zip(given, self.room_numbers, strict=True)
+        return [name or f"{self.room_word} {number}" for name, number in named]
 
     @cached_property
     def room_labels(self) -> list[str]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from datetime import date
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from scanplan.types import FilePath
 
+_TAG = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 _PLACE = re.compile(r"\{n?\}")
 _NUMBERED = re.compile(r"\{(\d)\}")
 _FORBIDDEN = re.compile(r'[<>/\\":;?*|=,`\x00-\x1f\x7f]')
@@ -27,6 +29,16 @@ _LONGEST = 255
 """Letters of such a name."""
 _OF_DXF = ("0", "Defpoints")
 """Layers that every drawing has, which are not renamed."""
+
+
+def tag_language(language: str) -> str:
+    """Return the tag (BCP 47) of a language of ours, or of a file that is named by one.
+
+    >>> tag_language("de"), tag_language("words/pt-BR.yaml"), tag_language("our own words.yaml")
+    ('de', 'pt-BR', 'und')
+    """
+    name = PurePath(language).stem
+    return name if _TAG.fullmatch(name) else "und"
 
 
 def read_receiver(export: Mapping[str, Any]) -> dict[str, Any]:

@@ -87,7 +87,11 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
 
 
 def format_imdf(
-    plan: FloorPlan, rows: Mapping[str, Rows], site: Site = NOWHERE, storey: str = ""
+    plan: FloorPlan,
+    rows: Mapping[str, Rows],
+    site: Site = NOWHERE,
+    storey: str = "",
+    language: str = "en",
 ) -> str:
     """Return the same features as the text of a FeatureCollection, placed as `plan.geojson` is.
 
@@ -95,19 +99,21 @@ def format_imdf(
     ----------
     rows, storey
         As of `imdf_layers`.
+    language : str
+        Of names, as BCP 47 has it; `und` if not known.
     """
     features = [
-        _make_feature(shape, {name: values[row] for name, values in layer.rows.items()})
+        _make_feature(shape, {name: values[row] for name, values in layer.rows.items()}, language)
         for layer in imdf_layers(plan, rows, storey).values()
         for row, shape in enumerate(site.place_shapes(layer.shapes))
     ]
     return geojson.format_collection(plan.name, features, **geojson.state_system(site))
 
 
-def _make_feature(shape: BaseGeometry, values: dict[str, Any]) -> geojson.Feature:
+def _make_feature(shape: BaseGeometry, values: dict[str, Any], language: str) -> geojson.Feature:
     """Return a feature as IMDF has it: its type beside its properties, names by language."""
     own = {"id": values.pop("id"), "feature_type": values.pop("feature_type")}
-    values |= {key: {"en": values[key]} for key in ("name", "alt_name") if values.get(key)}
+    values |= {key: {language: values[key]} for key in ("name", "alt_name") if values.get(key)}
     if "door_type" in values:
         values["door"] = {"type": values.pop("door_type"), "automatic": False, "material": None}
         values["accessibility"] = [values["accessibility"]] if values["accessibility"] else None

@@ -147,6 +147,15 @@ class Locale:
             found.append((re.compile(pattern), words))
         return found
 
+    def credit(self, text: str) -> str:
+        """Return what was done, by whom and when: names stay as they are.
+
+        >>> Locale(date="%d.%m.%Y", phrases={"no": "nein"}).credit("kept by hand, no, 2026-03-01")
+        'kept by hand, no, 01.03.2026'
+        """
+        done, *others = text.split(", ")
+        return ", ".join([self.say(done), *map(self.day, others)])
+
     def day(self, text: str) -> str:
         """Return a day (2026-03-01) as it is written there; any other text as it is."""
         day = _DATE.fullmatch(text)

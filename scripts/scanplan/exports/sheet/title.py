@@ -128,8 +128,8 @@ def _state_hands(plan: FloorPlan, locale: Locale) -> str:
     Names stay as they were given.
     """
     scaled = state_scale(plan.scale) if plan.scale and not plan.scale.fault else ""
-    *people, last = plan.corrected_by.split(", ")
-    return "; ".join(filter(None, [", ".join([*people, locale.day(last)]), locale.say(scaled)]))
+    people = ", ".join(map(locale.day, plan.corrected_by.split(", ")))
+    return "; ".join(filter(None, [people, locale.say(scaled)]))
 
 
 def _state_verdict(plan: FloorPlan, locale: Locale) -> str:
