@@ -76,7 +76,8 @@ def export_files(
     """
     assumed_m = {key: settings[key] for key in ("assumed_thickness_m", "assumed_height_m")}
     in_map = floorplan_files.read_floorplan(plan, name, **assumed_m)
-    drawn = replace(scale_floorplan(in_map), room_word=make_locale("m", words).say("Room"))
+    locale = make_locale(settings["units"], words)
+    drawn = replace(scale_floorplan(in_map), room_word=locale.say("Room"))
     registered = registered_scans.read_registered_scans(plan["registration"])
     t_ns = int(registered.t_ns[-1])
     ids = _identify_elements(in_map, outputs["ids"], outputs["known"], source)
@@ -89,6 +90,7 @@ def export_files(
         version=version or "not stated",
         t_ns=t_ns,
         site=site,
+        locale=locale,
     )
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": lambda: _format_ifc(drawn, ids, origin),

@@ -14,6 +14,7 @@ from helpers.ifc_volumes import volume_m3
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.exports.sheet.locale import Locale
 
 pytestmark = pytest.mark.wording
 
@@ -247,6 +248,26 @@ def test_names_say_what_an_element_is_by_the_number_that_tables_have():
     assert names["OpeningElement"] == voids and names["Slab"] == ["Floor slab"]
     for element in [*model.by_type("IfcWall"), *model.by_type("IfcDoor")]:
         assert short(element).split()[1] == element.Tag
+
+
+@pytest.mark.parametrize(
+    ("unit", "wall", "door"),
+    [("m", "36.5 cm", "88.5 cm"), ("mm", "365 mm", "885 mm"), ("ft", "1'-2 1/4\"", "2'-10 3/4\"")],
+)
+def test_types_are_named_by_half_centimetres_in_the_unit_that_is_asked_for(unit, wall, door):
+    walls, openings = floorplan_making.walls(), floorplan_making.openings()
+    walls["thickness_m"][3] = 0.3649
+    openings["y1_m"][1] = 1.886
+    openings["width_m"][1] = 0.886
+    drawn = plan(walls=walls, openings=openings)
+    model = opened(drawn, origin=ModelOrigin(locale=Locale(unit)))
+    layers = {
+        of.Name: of.HasAssociations[0].RelatingMaterial.MaterialLayers[0].LayerThickness
+        for of in model.by_type("IfcWallType")
+    }
+    assert layers[f"Wall {wall}"] == pytest.approx(0.365)
+    assert f"Wall 3, exterior, {wall}" in {of.Name for of in model.by_type("IfcWall")}
+    assert f"Door {door}" in {of.Name.partition(",")[0] for of in model.by_type("IfcDoorType")}
 
 
 def test_walls_of_one_thickness_share_a_type_with_a_layer_of_it(model):

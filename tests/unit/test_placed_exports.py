@@ -93,6 +93,14 @@ def test_the_building_model_lies_there(ids):
     east, north = CORNER_M @ [turn, (-turn[1], turn[0])]
     assert holds([(conversion.Eastings + east, conversion.Northings + north)], 1e-6)
     assert conversion.TargetCRS.Name == "EPSG:25832"
+    (site,) = model.by_type("IfcSite")
+    # 13,005.5 m of ground east of 9 degrees, on a parallel with a radius of 4,211 km
+    latitude, longitude = (
+        sum(part / 60**order for order, part in enumerate([*angle[:2], angle[2] + angle[3] / 1e6]))
+        for angle in (site.RefLatitude, site.RefLongitude)
+    )
+    assert (latitude, longitude) == pytest.approx((48.7710, 9.1769), abs=2e-4)
+    assert site.RefElevation == SITE.height_m
     (storey,) = model.by_type("IfcBuilding")
     assert storey.ElevationOfRefHeight == pytest.approx(244.7)
 

@@ -14,6 +14,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.data import element_ids
+from scanplan.exports.earth import find_geographic
 from scanplan.exports.model_colours import read_colour
 from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.geometry.arcs import NO_CIRCLES, SAGITTA_M, bend_path, middle_of_bulge, turn_rad
@@ -406,11 +407,20 @@ class IfcModel:
                 ifc_class, (), Name=name, ObjectPlacement=placement, CompositionType="ELEMENT"
             )
             self.aggregate(whole, [part])
+            if ifc_class == "IfcSite" and is_placed:
+                self._state_place(part, self.origin.site)
             if ifc_class == "IfcBuilding" and is_placed:
                 part.ElevationOfRefHeight = self.origin.site.height_m + floor_m
             whole = part
         whole.Elevation = 0.0
         return whole
+
+    def _state_place(self, part: entity_instance, site: Site) -> None:
+        """State latitude and longitude of a site, where they are known, and its height."""
+        part.RefElevation = site.height_m
+        place = find_geographic(site.epsg, site.east_m, site.north_m)
+        if place is not None:
+            part.RefLatitude, part.RefLongitude = map(_split_degrees, place)
 
     def _connection(self, axes: entity_instance, face: Polygon) -> entity_instance:
         """Return a face in the plane of two axes as what connects two elements."""
@@ -476,6 +486,18 @@ class Frame:
     def placement(self, model: IfcModel) -> entity_instance:
         """Return the placement of a product in this frame, on the storey's floor."""
         return model.placement((*self._start, 0), self.along, model.storey.ObjectPlacement)
+
+
+def _split_degrees(angle_deg: float) -> list[int]:
+    """Return an angle as degrees, minutes, seconds and millionths of these, all of its sign.
+
+    >>> _split_degrees(-79.5041675)
+    [-79, -30, -15, -3000]
+    """
+    sign = -1 if angle_deg < 0 else 1
+    seconds, millionths = divmod(round(abs(angle_deg) * 3600e6), 10**6)
+    minutes, seconds = divmod(seconds, 60)
+    return [sign * part for part in (*divmod(minutes, 60), seconds, millionths)]
 
 
 def _quantity_class(name: str) -> str:

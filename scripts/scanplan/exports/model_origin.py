@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import shapely
 
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.plan.floorplan import GeoReference
 from scanplan.types import Array, FloatArray, Settings
 
@@ -114,6 +115,8 @@ class ModelOrigin:
     t_ns : int
         When the last scan was taken, Unix time.
     site : Site
+    locale : Locale
+        How sizes are written in names.
     """
 
     author: str = ""
@@ -123,3 +126,4 @@ class ModelOrigin:
     version: str = "not stated"
     t_ns: int = 0
     site: Site = field(default_factory=Site)
+    locale: Locale = ENGLISH

@@ -208,8 +208,8 @@ def select_design(settings: Settings) -> Keywords:
 def select_files(settings: Settings) -> Keywords:
     """Return the settings of `export_files`, with the name of the catalogue of sizes."""
     export = select_section(settings, "plan", "export")
-    own = ("author", "organisation", "project", "storey", "site", "map_cell_m", "language")
-    return {key: export[key] for key in (*_ASSUMED, *own, *_OF_PRESENTATION)}
+    own = ("author", "organisation", "project", "storey", "site", "map_cell_m")
+    return {key: export[key] for key in (*_ASSUMED, *own, "units", "language", *_OF_PRESENTATION)}
 
 
 def select_cloud(settings: Settings) -> Keywords:

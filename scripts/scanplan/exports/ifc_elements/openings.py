@@ -19,6 +19,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Symbol
 from scanplan.exports.sheet.openings import Swing
 from scanplan.exports.sheet.symbols import symbol_paths
@@ -81,7 +82,7 @@ def _add_opening(
     kind = plan.openings["type"][row]
     extent_m = vertical_extent_m(plan, row)
     attributes = {
-        "Name": _name_opening(storey, row),
+        "Name": _name_opening(model.origin.locale, storey, row),
         "Tag": str(plan.openings["opening"][row]),
         "ObjectType": str(kind),
         "ObjectPlacement": frame.placement(model),
@@ -132,14 +133,14 @@ def _state_operation(operation: str) -> dict[str, str]:
     return {"OperationType": operation, **own}
 
 
-def _name_opening(storey: StoreyPlan, row: int) -> str:
+def _name_opening(locale: Locale, storey: StoreyPlan, row: int) -> str:
     """Return the number that an opening has in tables, its width, and what it joins."""
     columns = storey.plan.openings
-    kind, width_m = columns["type"][row], columns["width_m"][row]
+    kind, width_m = columns["type"][row], float(columns["width_m"][row])
     joined = storey.name_joined_rooms(row)
     if len(joined) == 1 and kind in WAYS and storey.leads_outside(row):
         joined = [*joined, "outside"]
-    words = [f"{kind.capitalize()} {columns['opening'][row]}", f"{width_m:.2f} m"]
+    words = [f"{kind.capitalize()} {columns['opening'][row]}", locale.measure(width_m)]
     return ", ".join([*words, *filter(None, [" to ".join(joined)])])
 
 
@@ -250,7 +251,7 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
             fillings_of[kind, width_m, operation, name].append(filling)
     for (kind, width_m, operation, listed), fillings in sorted(fillings_of.items()):
         of_doors = kind == "door"
-        name = listed or f"{kind.capitalize()} {100 * width_m:.0f} cm"
+        name = listed or f"{kind.capitalize()} {model.origin.locale.size(width_m)}"
         if operation != "NOTDEFINED":
             name += ", " + operation.lower().replace("_", " ").replace("userdefined", "sliding")
         attributes = {"PredefinedType": "DOOR" if of_doors else "WINDOW"}

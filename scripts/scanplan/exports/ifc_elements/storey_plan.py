@@ -55,13 +55,14 @@ class StoreyPlan:
     def name_type(self, kind: str, size_m: float) -> tuple[str, float]:
         """Return the name of the type of a size, empty of none, and its size.
 
-        That is the catalogue's of a regular plan, or else to the centimetre, no less than one.
+        That is the catalogue's of a regular plan, or else to half a centimetre, no less than one:
+        bricks are 11.5, 17.5 and 36.5 cm thick.
         """
         sizes: Mapping[str, float] = (self.catalogue or {}).get(kind, {})
         for name, nominal_m in sizes.items():
             if abs(nominal_m - size_m) <= _ALIKE_M:
                 return name, nominal_m
-        return "", max(round(100 * float(size_m)), 1) / 100
+        return "", max(round(200 * float(size_m)), 1) / 200
 
     def find_code(self, kind: str, name: str) -> tuple[str, str]:
         """Return the system and the code of a type of a list of the catalogue; empty of none."""

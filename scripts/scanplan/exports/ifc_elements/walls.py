@@ -15,6 +15,7 @@ from scanplan.exports.ifc_elements.storey_plan import (
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import vertical_extent_m
+from scanplan.exports.sheet.locale import Locale
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -38,7 +39,7 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     wall = model.known(
         "IfcWall",
         storey.ids["wall"][row],
-        Name=_name_wall(storey, row),
+        Name=_name_wall(model.origin.locale, storey, row),
         Tag=number,
         ObjectPlacement=frame.placement(model),
     )
@@ -59,16 +60,17 @@ def _add_wall(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance:
     return wall
 
 
-def _name_wall(storey: StoreyPlan, row: int) -> str:
+def _name_wall(locale: Locale, storey: StoreyPlan, row: int) -> str:
     """Return the number that a wall has in tables and on sheets, and what tells it from others."""
     plan = storey.plan
-    thickness_cm = 100 * plan.walls["thickness_m"][row]
+    thickness_m = float(plan.walls["thickness_m"][row])
+    radius_m = float(plan.walls["arc_radius_m"][row])
     words = [
         f"Wall {plan.walls['wall'][row]}",
         "exterior" if storey.external[row] else "interior",
-        f"{thickness_cm:.0f} cm" if storey.is_thickness_measured[row] else "thickness assumed",
-        f"radius {plan.walls['arc_radius_m'][row]:.2f} m" if plan.wall_shapes.is_bent[row] else "",
-        f"{plan.heights_m[row]:.2f} m high" if plan.low[row] else "",
+        locale.size(thickness_m) if storey.is_thickness_measured[row] else "thickness assumed",
+        f"radius {locale.measure(radius_m)}" if plan.wall_shapes.is_bent[row] else "",
+        f"{locale.measure(float(plan.heights_m[row]))} high" if plan.low[row] else "",
         "inferred" if plan.walls["state"][row] == "inferred" else "",
     ]
     return ", ".join(filter(None, words))
@@ -174,7 +176,7 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
         rows_of[is_thick, thickness_m, name if is_thick else ""].append(row)
     for (is_thick, thickness_m, listed), rows in sorted(rows_of.items()):
         assumed = "" if is_thick else ", thickness assumed"
-        name = (listed or f"Wall {100 * thickness_m:.0f} cm") + assumed
+        name = (listed or f"Wall {model.origin.locale.size(thickness_m)}") + assumed
         material = model.new("IfcMaterial", "Not known" + assumed, None, "not known")
         layer = model.new("IfcMaterialLayer", material, thickness_m)
         layers = model.new("IfcMaterialLayerSet", [layer], name)

@@ -78,6 +78,18 @@ class Locale:
             return f"{length_m:.{decimals}f} m".replace(".", self.decimal)
         return self.length(length_m) + f" {self.unit}" * (not self.is_imperial)
 
+    def size(self, length_m: float) -> str:
+        """Return a thickness or a width with its unit, to half a centimetre where it is metric.
+
+        >>> Locale().size(0.3649), Locale("mm").size(0.115), Locale(decimal=",").size(0.115)
+        ('36.5 cm', '115 mm', '11,5 cm')
+        """
+        if self.is_imperial:
+            return self.length(length_m)
+        half_cm = round(200 * length_m)
+        said = f"{5 * half_cm} mm" if self.unit == "mm" else f"{half_cm / 2:g} cm"
+        return said.replace(".", self.decimal)
+
     def girth(self, length_m: float) -> str:
         """Return a long way around with its unit, in whole feet where it is in feet."""
         return f"{length_m / _FOOT_M:.0f} ft" if self.is_imperial else self.measure(length_m)
