@@ -64,6 +64,19 @@ def test_the_command_line_wins_over_the_dataset_over_the_defaults(defaults, sche
     assert settings["hulls"] == defaults["hulls"] and defaults == before
 
 
+def test_files_that_a_dataset_names_may_lie_in_its_folder(defaults, schema, tmp_path):
+    own = tmp_path / "dataset.yaml"
+    own.write_text("plan: {export: {catalogue: ours.yaml, language: de, layers: elsewhere.yaml}}\n")
+    (tmp_path / "ours.yaml").touch()
+    export = settings_of_dataset(defaults, read_own_layers(own), schema)["plan"]["export"]
+    assert export["catalogue"] == str(tmp_path / "ours.yaml")
+    assert (export["language"], export["layers"]) == ("de", "elsewhere.yaml")
+    # what other files say, and the command line, is of the command's folder
+    given = [Layer("other.yaml", {"plan": {"export": {"catalogue": "ours.yaml"}}})]
+    export = settings_of_dataset(defaults, given, schema)["plan"]["export"]
+    assert export["catalogue"] == "ours.yaml"
+
+
 def test_what_a_run_is_of_is_no_setting_of_its_results(defaults, schema):
     layers = [
         Layer("a.yaml", {"dataset": "a", "replace": "a"}),

@@ -21,7 +21,7 @@ from scanplan.project.settings_check import (
     find_crossed_limits,
     iterate_leaves,
 )
-from scanplan.project.settings_schema import Schema, default_settings, read_schema
+from scanplan.project.settings_schema import Schema, default_settings, iterate_keys, read_schema
 from scanplan.project.yaml_file import read_yaml
 
 if TYPE_CHECKING:
@@ -46,10 +46,13 @@ class Layer:
     origin : str
         A file, or `settings_check.COMMAND_LINE`.
     values : dict
+    folder : Path or None
+        Where files that it names may lie, besides the folder of the command.
     """
 
     origin: str
     values: dict[str, Any]
+    folder: Path | None = None
 
 
 class KnownSettings(NamedTuple):
@@ -124,11 +127,30 @@ def settings_of_dataset(
         # what a run is of has been checked once: the list of many datasets is long
         own = {key: value for key, value in layer.values.items() if key not in OF_A_RUN}
         check_settings(own, schema, layer.origin)
-        settings = merge_settings(settings, own)
+        settings = merge_settings(settings, _name_beside(own, layer.folder, schema))
     if crossed := find_crossed_limits(settings, schema):
         keys, fault = crossed
         raise StageError(f"{find_origin(layers, *keys) or _DEFAULTS}: {fault}; {MANUAL}")
     return {key: value for key, value in settings.items() if key not in OF_A_RUN}
+
+
+def _name_beside(values: dict[str, Any], folder: Path | None, schema: Schema) -> dict[str, Any]:
+    """Return settings with the files that lie in a folder named by their places.
+
+    Any other name is one of ours, or that of a file in the folder of the command.
+    """
+    for key, node in iterate_keys(schema) if folder else ():
+        *sections, last = key.split(".")
+        said: Any = values
+        for section in sections:
+            said = said.get(section, {})
+        name = said.get(last) if node.get("format") == "path" else None
+        if folder and name and os.path.lexists(folder / name):
+            place: Any = str(folder / name)
+            for of in reversed(key.split(".")):
+                place = {of: place}
+            values = merge_settings(values, place)
+    return values
 
 
 def settings_of_run(defaults: Settings, layers: Sequence[Layer], schema: Schema) -> dict[str, Any]:
@@ -163,7 +185,7 @@ def read_own_layers(path: FilePath | None, *, may_lack: bool = True) -> list[Lay
                 f"{path}: `{key}` is given on the command line, not in the dataset's own settings;"
                 " drop it"
             )
-    return [Layer(str(path), values)]
+    return [Layer(str(path), values, Path(path).parent)]
 
 
 def find_origin(layers: Sequence[Layer], *keys: str) -> str | None:
