@@ -60,6 +60,9 @@ def correct_plan(
     if reference is not None:
         notes |= {"georeference": georeference.format_reference(reference)}
         placed = f"; {len(points)} reference points agree within {reference.residual_m:.2f} m"
+        if reference.fits_mirrored:
+            fault = "no residual shows exchanged axes, as all points lie on one line"
+            log.log_warning(f"correct_plan: {fault}; add a check_point off it")
     notes |= {"lengths": json.dumps(outcome.lengths_m)} if outcome.lengths_m else {}
     if scale is not None:
         notes |= {"scale": json.dumps(vars(scale))}

@@ -11,6 +11,7 @@ from helpers.correcting import MADE, corrected, faces_of, write_plan
 from helpers.refusals import assert_told, refused
 from scanplan.errors import StageError
 from scanplan.plan import planning
+from scanplan.report.wording import state_reference
 from scanplan.stage.witness_table import SKETCH
 from scanplan.store import tables
 from scanplan.validation.verdict import judge_plan
@@ -166,6 +167,19 @@ def test_reference_points_say_where_the_plan_lies(plan, caplog):
                             planning.TABLES["free"], "georeference")  # fmt: skip
     assert json.loads(note)["crs"] == "EPSG:25832"
     assert_told(caplog.text, value=("3 reference points", "0.00 m"))
+
+
+def test_two_points_say_that_they_do_not_show_exchanged_axes(plan, caplog):
+    points = [
+        {"element": "reference_point", "at": at, "world": world, "crs": "EPSG:25832"}
+        for at, world in (([0, 0], [1000, 2000]), ([10, 0], [1010, 2000]))
+    ]
+    reference = corrected(plan, *points).georeference
+    assert reference.fits_mirrored and "check point" in state_reference(reference)
+    assert_told(caplog.text, value="axes", remedy="add a check_point")
+    aside = {"element": "check_point", "at": [5, 5], "world": [1005, 2005], "crs": "EPSG:25832"}
+    reference = corrected(plan, *points, aside).georeference
+    assert not reference.fits_mirrored and "axes" not in state_reference(reference)
 
 
 def test_each_control_and_check_point_has_its_residual(plan):

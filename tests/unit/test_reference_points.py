@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from helpers.refusals import refused
 from scanplan.errors import StageError
-from scanplan.project.reference_points import check_points
+from scanplan.project.reference_points import check_points, check_zone, fits_mirrored
 
 PLACES = [(0, 0), (12, 1), (3, 9), (11, 8)]
 
@@ -72,6 +72,37 @@ def test_the_one_point_that_is_off_is_named_and_without_it_they_pass(which, off_
 def test_the_residual_of_each_point_is_told():
     with pytest.raises(StageError, match=r"1: 2\.431 m, 2: 4\.924 m, 3: 1\.324 m, 4: 1\.403 m"):
         check(PLACES, lambda z: z + (7 if z == 12 + 1j else 0))
+
+
+@pytest.mark.parametrize(
+    ("places", "is_open"),
+    # the last: 0.3 m off a line of 20 m, less than places may be off
+    [([(0, 0), (12, 1)], True), (PLACES, False), ([(0, 0), (10, 0.3), (20, 0)], True)],
+)
+def test_exchanged_axes_show_by_a_point_off_the_line_alone(places, is_open):
+    world = [(5e5 + x, 5.4e6 + y) for x, y in places]
+    assert fits_mirrored(places, world) is is_open
+    # what passes exchanged, too, is told by nothing
+    if is_open:
+        check(places, lambda z: complex(z.imag, z.real))
+
+
+@pytest.mark.parametrize(
+    ("crs", "world", "remedy"),
+    [
+        ("EPSG:25832", (5_400_020.1, 500_010.2), "[east, north]"),
+        ("EPSG:32717", (5e7, 2e7), "metres"),
+        ("EPSG:25832", (500_010.2, 5_400_020.1), ""),
+        # Gauss-Krüger has its zone before the easting
+        ("EPSG:31467", (3_500_010.2, 5_400_020.1), ""),
+    ],
+)
+def test_a_place_beyond_a_zone_of_utm_is_told_though_two_points_agree(crs, world, remedy):
+    if remedy:
+        with refused(value=("entry 2", f"{world[0]:,.0f}", crs), remedy=remedy):
+            check_zone("a.yaml: entry 2", crs, world)
+    else:
+        check_zone("a.yaml: entry 2", crs, world)
 
 
 def test_points_on_one_line_pass():

@@ -7,36 +7,32 @@ environment holds.
 import cmath
 import math
 
+from scanplan.project.reference_systems import find_zone
+
 _A_M, _FLATTENING = 6378137.0, 1 / 298.257222101
 """Of GRS 80; the ellipsoid of WGS 84 differs by a tenth of a millimetre."""
 _SCALE, _EAST_M, _SOUTH_M = 0.9996, 500_000.0, 10_000_000.0
 """On the central meridian; what is added to eastings, and to northings of the south."""
-_ZONES = {
-    32600: range(1, 61),  # WGS 84, north
-    32700: range(1, 61),  # WGS 84, south
-    25800: range(28, 39),  # ETRS89
-    26900: range(1, 24),  # NAD83, a metre or two from WGS 84
-}
-"""Numbers of zones by what the EPSG's codes are beyond them."""
 
 
-def find_geographic(epsg: int | None, east_m: float, north_m: float) -> tuple[float, float] | None:
+def find_geographic(crs: str | None, east_m: float, north_m: float) -> tuple[float, float] | None:
     """Return latitude and longitude of a place, degrees; None outside of UTM.
 
     By Krüger's series to the fourth order, a hundredth of a millimetre within a zone.
 
-    >>> tower = find_geographic(32617, 630084.0, 4833438.0)  # CN Tower, Toronto
+    >>> tower = find_geographic("EPSG:32617", 630084.0, 4833438.0)  # CN Tower, Toronto
     >>> [round(angle, 4) for angle in tower]
     [43.6426, -79.3871]
-    >>> find_geographic(31467, 3500000.0, 5400000.0) is None
+    >>> find_geographic("EPSG:31467", 3500000.0, 5400000.0) is None
     True
     """
-    base = next((of for of, zones in _ZONES.items() if epsg and epsg - of in zones), None)
-    if base is None or epsg is None:
+    zone = find_zone(crs)
+    if zone is None:
         return None
+    number, is_south = zone
     n = _FLATTENING / (2 - _FLATTENING)
     radius_m = _SCALE * _A_M / (1 + n) * (1 + n**2 / 4 + n**4 / 64)
-    north_m -= _SOUTH_M if base == 32700 else 0.0
+    north_m -= _SOUTH_M if is_south else 0.0
     place = complex(north_m, east_m - _EAST_M) / radius_m
     to_sphere = (
         n / 2 - 2 * n**2 / 3 + 37 * n**3 / 96 - n**4 / 360,
@@ -58,5 +54,5 @@ def find_geographic(epsg: int | None, east_m: float, north_m: float) -> tuple[fl
     latitude_rad = conformal_rad + sum(
         delta * math.sin(2 * order * conformal_rad) for order, delta in enumerate(to_ellipsoid, 1)
     )
-    meridian_deg = 6 * (epsg - base) - 183
+    meridian_deg = 6 * number - 183
     return math.degrees(latitude_rad), meridian_deg + math.degrees(east_rad)

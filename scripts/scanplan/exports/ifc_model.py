@@ -418,7 +418,7 @@ class IfcModel:
     def _state_place(self, part: entity_instance, site: Site) -> None:
         """State latitude and longitude of a site, where they are known, and its height."""
         part.RefElevation = site.height_m
-        place = find_geographic(site.epsg, site.east_m, site.north_m)
+        place = find_geographic(site.crs, site.east_m, site.north_m)
         if place is not None:
             part.RefLatitude, part.RefLongitude = map(_split_degrees, place)
 

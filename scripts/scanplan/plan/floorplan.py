@@ -91,6 +91,9 @@ class GeoReference:
         Root of the mean square distance of the reference points after it.
     control_off_m, check_off_m : sequence of float
         Distance of each of them, and of each point that was not used for it.
+    fits_mirrored : bool
+        Whether a mirror image of the map would agree with all of them as well: then no residual
+        shows exchanged axes.
     """
 
     crs: str
@@ -100,6 +103,7 @@ class GeoReference:
     residual_m: float
     control_off_m: Sequence[float] = ()
     check_off_m: Sequence[float] = ()
+    fits_mirrored: bool = False
 
 
 @dataclass(frozen=True)

@@ -231,6 +231,8 @@ def read_corrections(path: FilePath) -> list[Correction]:
         raise StageError(f"{checks[0].entry}: no reference point to hold it against; add two")
     if len(points) == 1:
         raise StageError(f"{points[0].entry}: one reference point gives no direction; add another")
+    for point in (*points, *checks):
+        reference_points.check_zone(point.entry, point.crs, point.world_m or point.at_m)
     if points:
         world_m = [point.world_m or point.at_m for point in points]
         reference_points.check_points(

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from scanplan.errors import MOST_NAMED, StageError
+from scanplan.project.reference_systems import find_zone
 
 Place = tuple[float, float]
 
@@ -20,6 +21,8 @@ _MOST_OFF_M = 1.0
 satellites indoors."""
 _MOST_OFF_SHARE = 0.02
 """The same, as a share of the distance: maps drift, and projections stretch by a thousandth."""
+_EASTERN_M = 1_000_000.0
+"""Beyond all eastings of zones of UTM, which have 500 km in their middle and 167 to 833 km."""
 _UNITS = {1000.0: "millimetres", 100.0: "centimetres", 1 / 0.3048: "feet", 1 / 0.0254: "inches"}
 """How many of a metre."""
 _NEAR_UNIT = 0.03
@@ -61,6 +64,23 @@ def check_points(entries: Sequence[str], at_m: Sequence[Place], world_m: Sequenc
     raise StageError(f"{entries[worst]}: {fault}; {_explain(entries, inside_m, outside_m)}")
 
 
+def check_zone(entry: str, crs: str, world_m: Place) -> None:
+    """Refuse a place that lies in no zone of UTM, where it is to be in one.
+
+    Raises
+    ------
+    StageError
+        Naming the entry, and whether its axes are exchanged.
+    """
+    east_m, north_m = world_m
+    if find_zone(crs) is None or abs(east_m) <= _EASTERN_M:
+        return
+    fault = f"{entry}: world lies {east_m:,.0f} m east, {crs} ends before {_EASTERN_M:,.0f} m"
+    is_exchanged = abs(north_m) <= _EASTERN_M
+    remedy = "give `world` as [east, north]" if is_exchanged else "give it in metres of the system"
+    raise StageError(f"{fault}; {remedy}")
+
+
 def measure_off_m(
     inside_m: Sequence[complex], outside_m: Sequence[complex], scale: float = 1.0
 ) -> list[float]:
@@ -79,6 +99,16 @@ def measure_off_m(
     turn = sum(a.conjugate() * b for a, b in zip(inner, outer, strict=True))
     turn = turn / abs(turn) if turn else 1.0
     return [abs(b - turn * a) for a, b in zip(inner, outer, strict=True)]
+
+
+def fits_mirrored(at_m: Sequence[Place], world_m: Sequence[Place]) -> bool:
+    """Return whether points agree as well with a mirror image of the map: exchanged axes are one.
+
+    Such as two points do, and all on one line.
+    """
+    inside_m, outside_m = ([complex(*place) for place in places] for places in (at_m, world_m))
+    mirrored = [_exchange(place) for place in outside_m]
+    return max(measure_off_m(inside_m, mirrored)) <= _most_off_m(inside_m)
 
 
 def _explain(

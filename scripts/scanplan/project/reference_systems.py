@@ -8,6 +8,14 @@ import re
 _CODE = re.compile(r"EPSG:[0-9]+")
 _CODES = range(1024, 32768)
 """What the EPSG registry gives out."""
+_SOUTH = 32700
+_ZONES = {
+    32600: range(1, 61),  # WGS 84, north
+    _SOUTH: range(1, 61),  # WGS 84, south
+    25800: range(28, 39),  # ETRS89
+    26900: range(1, 24),  # NAD83, a metre or two from WGS 84
+}
+"""Numbers of zones of UTM by what the EPSG's codes are beyond them."""
 _IN_DEGREES = """
     3819-3824 3887-3889 3906 4000-4025 4027-4036 4039-4047 4052-4055 4073-4081 4120-4216
     4218-4389 4463-4466 4468-4470 4472-4473 4475-4483 4490 4555-4558 4600-4646 4657-4765
@@ -66,6 +74,17 @@ _IN_FEET = """
 """
 """Codes of projected systems in EPSG v12.029 whose axes are in feet, or in other units than
 metres."""
+
+
+def find_zone(name: str | None) -> tuple[int, bool] | None:
+    """Return the number of a zone of UTM, and whether it is of the south; None of other systems.
+
+    >>> find_zone("EPSG:25832"), find_zone("EPSG:32717"), find_zone("EPSG:31467"), find_zone(None)
+    ((32, False), (17, True), None, None)
+    """
+    code = int((name or "").partition(":")[2]) if _CODE.fullmatch(name or "") else 0
+    of_base = ((base, code - base) for base, zones in _ZONES.items() if code - base in zones)
+    return next(((zone, base == _SOUTH) for base, zone in of_base), None)
 
 
 def find_fault(name: str) -> str | None:

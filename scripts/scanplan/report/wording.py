@@ -90,6 +90,8 @@ def state_reference(reference: floorplan.GeoReference) -> str:
     if reference.check_off_m:
         counted = floorplan.say_count(len(reference.check_off_m), "check point")
         parts.append(f"{counted}, off by {listed(reference.check_off_m)} m")
+    if reference.fits_mirrored:
+        parts.append("exchanged axes would not show: add a check point off the points' line")
     return "; ".join(parts)
 
 

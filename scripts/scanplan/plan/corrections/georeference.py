@@ -7,6 +7,7 @@ import numpy as np
 
 from scanplan.plan.floorplan import GeoReference
 from scanplan.plan.survey_scale import PlacedPoints
+from scanplan.project import reference_points
 from scanplan.project.corrections_file import Correction
 
 
@@ -60,6 +61,10 @@ def fit_reference(
         residual_m,
         control_off_m.tolist(),
         check_off_m.tolist(),
+        reference_points.fits_mirrored(
+            [point.at_m for point in (*points, *checks)],
+            [point.world_m or point.at_m for point in (*points, *checks)],
+        ),
     )
 
 
