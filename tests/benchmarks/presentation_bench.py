@@ -9,14 +9,15 @@ import numpy as np
 import shapely
 
 from scanplan.exports.drafting.regular_plan import MEASURED, draft_plan, make_draft_settings
+from scanplan.geometry.lines import left_normals
 from scanplan.lab.evaluation.scores import drawn_plan, plan_scores, score_files
 from scanplan.lab.evaluation.scores.drawn_plan import DrawnPlan
 from scanplan.lab.evaluation.scores.scene import TrueOpenings
 from scanplan.lab.evaluation.scores.score_files import Placed
 from scanplan.plan import floorplan_files
-from scanplan.plan.floorplan import FloorPlan
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
 from scanplan.project import catalogue_file
-from scanplan.types import Columns, FloatArray, IntArray, Settings
+from scanplan.types import BoolArray, Columns, FloatArray, IntArray, Settings
 
 _SHOWN = (
     *("room_iou", "wall_correctness_010", "wall_completeness_010", "thickness_error_m"),
@@ -79,11 +80,34 @@ def _format(pair: Sequence[Mapping[str, float]]) -> str:
 
 
 def _replace(tables: Mapping[str, Columns], regular: FloorPlan) -> dict[str, Columns]:
-    """Return a plan's tables as those of its regular one, assumed thickness left out."""
+    """Return a plan's tables as those of its regular one, assumed thickness left out.
+
+    What was measured of reveals is there where walls that are drawn end as they do.
+    """
     walls = regular.walls
     known_m = np.where(walls["thickness_from"] == MEASURED, walls["thickness_m"], np.nan)
     changed = {"walls": {**walls, "thickness_m": known_m}, "openings": regular.openings}
-    return {**tables, "faces": regular.faces, "rooms": regular.rooms, **changed}
+    measured = tables["faces"]
+    is_jamb = ~np.isin(measured["face"], regular.faces["face"]) & _find_jambs(measured, regular)
+    faces = {
+        name: np.concatenate([values, measured[name][is_jamb]])
+        for name, values in regular.faces.items()
+    }
+    return {**tables, "faces": faces, "rooms": regular.rooms, **changed}
+
+
+def _find_jambs(faces: Columns, regular: FloorPlan) -> BoolArray:
+    """Return which faces (f,) are sides of openings of a regular plan: reveals, drawn by wall."""
+    left_m, right_m = regular.sides_m
+    rows = np.flatnonzero(regular.hosts >= 0)
+    hosts = regular.hosts[rows]
+    across = left_normals(centrelines_m(regular.walls))[hosts]
+    sides_m = np.stack([left_m[hosts], -right_m[hosts]], axis=1)
+    ends_m = centrelines_m(regular.openings)[rows]
+    jambs_m = ends_m[:, :, None] + sides_m[:, None, :, None] * across[:, None, None]
+    drawn = shapely.union_all(shapely.buffer(line_shapes(jambs_m.reshape(-1, 2, 2)), _NEAR_M))
+    lines = line_shapes(centrelines_m(faces))
+    return shapely.length(shapely.intersection(lines, drawn)) > 0.5 * shapely.length(lines)
 
 
 def _narrow_by_frames(true: TrueOpenings, file: Path) -> TrueOpenings:

@@ -11,7 +11,13 @@ from hypothesis import strategies as st
 from helpers import floorplan_making
 from scanplan.exports.drafting.directions import find_main_directions
 from scanplan.exports.drafting.nominal_sizes import choose_sizes
-from scanplan.exports.drafting.regular_plan import ASSUMED, MEASURED, DraftSettings, draft_plan
+from scanplan.exports.drafting.regular_plan import (
+    ASSUMED,
+    MEASURED,
+    REVEALS,
+    DraftSettings,
+    draft_plan,
+)
 from scanplan.plan.floorplan import centrelines_m
 
 SETTINGS = DraftSettings(
@@ -171,6 +177,36 @@ def test_what_is_regular_stays_but_for_what_is_assumed():
     # with its corners: from the lower edge of the south wall to the upper one of the north wall
     assert shapely.union_all(regular.bodies).bounds == pytest.approx((-0.2, -0.2, 7.4, 3.2))
     assert not {"verify", "p_true", "doubt"} & set(regular.walls)
+
+
+@pytest.mark.parametrize(
+    ("deep_m", "thick_m", "said"),
+    [
+        ([0.42, 0.41], 0.415, REVEALS),  # between the catalogue's: as deep as they are
+        ([0.39, 0.38], 0.4, REVEALS),  # a thickness of the catalogue
+        ([0.2, 0.2], 0.3, ASSUMED),  # they end at a frame
+        ([0.42], 0.3, ASSUMED),  # one alone may be something else
+        ([0.42, 1.4], 0.3, ASSUMED),  # the other leads on
+    ],
+)
+def test_a_facade_is_as_thick_as_its_reveals_are_deep(deep_m, thick_m, said):
+    """The east wall, whose face is at 7.1 m, with a window from 1 to 2 m."""
+    sides = [((7.1, y, 7.1 + deep, y), np.nan, 0, -1, "observed")
+             for y, deep in zip((1.0, 2.0), deep_m, strict=False)]  # fmt: skip
+    rows = [*floorplan_making.WALLS, *sides]
+    window = ((7.1, 1.0, 7.1, 2.0), 1, "window", 0.9, 2.1, 1, -1)
+    drawn = floorplan_making.plan(
+        walls=floorplan_making.walls(rows),
+        openings=floorplan_making.openings([*floorplan_making.OPENINGS, window], rows),
+    )
+    regular, drafted = draft_plan(drawn, replace(SETTINGS, walls_m=(0.1, 0.2, 0.4)))
+    (east,) = np.flatnonzero(regular.walls["wall"] == 1)
+    assert regular.walls["thickness_m"][east] == pytest.approx(thick_m)
+    assert regular.walls["thickness_from"][east] == said
+    assert drafted.n_revealed == (said == REVEALS)
+    # its face stays where it was seen, and what is assumed lies behind it
+    assert regular.bodies[east].bounds[0] == pytest.approx(7.1)
+    assert not {6, 7} & set(regular.walls["wall"].tolist()) or deep_m[-1] > 1
 
 
 def test_rooms_follow_walls_and_leave_neither_gap_nor_overlap():

@@ -385,8 +385,9 @@ PRESENTATION = Schema(
 )
 """Walls of the regular plan, and what was changed of them.
 
-`thickness_from` is measured or assumed; lines are in the middle of walls. A curved wall stays as it
-was measured: seen from one side it has no thickness (NaN), and its line is that of its face.
+`thickness_from` is measured, assumed, or reveals (as deep as those of its openings); lines are in
+the middle of walls. A curved wall stays as it was measured: seen from one side it has no thickness
+(NaN), and its line is that of its face.
 `moved_m` is the greatest distance that a side was moved by at an end.
 """
 ELEMENT_IDS = Schema(

@@ -194,6 +194,7 @@ def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
     """Return what has been changed of the plan, and by what rule areas are, in lines."""
     walls = say_count(drafted.n_walls, "wall")
     assumed = say_count(drafted.n_assumed, "wall")
+    revealed = say_count(drafted.n_revealed, "facade")
     left_out = say_count(drafted.n_left_out, "scrap")
     sentences = [
         f"Of {walls} {drafted.n_square} are square to the building, {drafted.n_through} in line"
@@ -203,6 +204,7 @@ def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
         f" {locale.deviation(drafted.thickness_m)}.",
         f"Openings widened by at most {locale.deviation(drafted.width_m)}.",
         f"{assumed} seen from one side: thickness assumed." * (drafted.n_assumed > 0),
+        f"{revealed} as thick as reveals are deep." * (drafted.n_revealed > 0),
         f"{left_out} left out: short walls and panes at no room, slits, ends beyond facades."
         * (drafted.n_left_out > 0),
         _AREA_RULE,

@@ -9,9 +9,10 @@ import shapely
 
 from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
 from scanplan.exports.drafting.adjustment import adjust_walls
-from scanplan.exports.drafting.facades import find_facades, limit_backs
+from scanplan.exports.drafting.facades import find_facades, limit_backs, measure_reveals
 from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
+from scanplan.exports.drafting.nominal_sizes import choose_sizes
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.stubs import cut_stubs
@@ -20,11 +21,16 @@ from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
 from scanplan.store import schemas
-from scanplan.types import Columns, FloatArray
+from scanplan.types import Columns, FloatArray, IntArray
 
 _DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
-MEASURED, ASSUMED = "measured", "assumed"
-"""Where a wall's thickness is from."""
+MEASURED, ASSUMED, REVEALS = "measured", "assumed", "reveals"
+"""Where a wall's thickness is from: a facade is as thick as its reveals are deep, or as assumed."""
+_SHORT_M = 0.01
+"""By which reveals are seen less deep than walls are thick, and by which that errs (bench)."""
+_NOMINAL_M = 0.02
+"""From there to a thickness of the catalogue: a wall is hardly thinner than its reveals."""
+_STEP_M = 0.005  # of other thicknesses, as types are sorted by
 
 
 @dataclass(frozen=True)
@@ -69,9 +75,9 @@ class Drafted:
         Walls, of these in a main direction, in one line with another, of a nominal thickness.
     moved_m, turned_deg, thickness_m, width_m : float
         The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
-    n_assumed, n_left_out : int
-        Walls whose thickness is assumed; short pieces of wall, slits, ends of walls beyond facades
-        and panes at no room that are not drawn.
+    n_assumed, n_revealed, n_left_out : int
+        Walls whose thickness is assumed, or by the depth of their reveals; short pieces of wall,
+        slits, ends of walls beyond facades and panes at no room that are not drawn.
     """
 
     n_walls: int
@@ -83,6 +89,7 @@ class Drafted:
     thickness_m: float
     width_m: float
     n_assumed: int
+    n_revealed: int
     n_left_out: int
 
 
@@ -100,16 +107,17 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     plan, n_cut = cut_stubs(whole, is_facade)
     if plan is not whole:
         is_facade = find_facades(plan)
+    reveals_m = _find_reveals(surveyed, plan.walls["wall"][is_facade], settings)
+    deep_m = np.array([reveals_m.get(wall, 0.0) for wall in plan.walls["wall"].tolist()])
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     adjusted = adjust_walls(walls, wanted)
     moved = moved_walls.move_walls(walls, wanted, adjusted)
     grown_m = np.where(walls.is_thick, adjusted.grown_m, 0.0)
-    behind_m = np.where(
-        is_facade,
-        max(settings.facade_m, plan.assumed_thickness_m),
-        plan.assumed_thickness_m,
-    )
+    facade_m = max(settings.facade_m, plan.assumed_thickness_m)
+    behind_m = np.where(is_facade, np.maximum(facade_m, deep_m), plan.assumed_thickness_m)
+    thickness_from = np.where(deep_m > facade_m, REVEALS, ASSUMED)
+    thickness_from = np.where(walls.is_thick, MEASURED, thickness_from).astype(object)
     behind_m = limit_backs(walls, behind_m)
     # of curved walls what is behind the face is drawn as on the measured sheet
     behind_m = np.where(walls.is_bent, np.nan, behind_m)
@@ -134,7 +142,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "moved_m": adjusted.moved_m,
         "turned_deg": turned_deg,
         "thickness_changed_m": grown_m,
-        "thickness_from": np.where(walls.is_thick, MEASURED, ASSUMED).astype(object),
+        "thickness_from": thickness_from,
     }
     regular = settle_loose(
         replace(
@@ -156,10 +164,27 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         turned_deg=float(np.abs(turned_deg).max(initial=0)),
         thickness_m=float(np.abs(grown_m).max(initial=0)),
         width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
-        n_assumed=int((~walls.is_thick).sum()),
+        n_assumed=int((thickness_from == ASSUMED).sum()),
+        n_revealed=int((thickness_from == REVEALS).sum()),
         n_left_out=_count_elements(surveyed) - _count_elements(regular) + n_cut,
     )
     return regular, drafted
+
+
+def _find_reveals(plan: FloorPlan, facades: IntArray, settings: DraftSettings) -> dict[int, float]:
+    """Return how thick facades are at least, metres, by numbers of those that show reveals.
+
+    A thickness of the catalogue where one is near enough.
+    """
+    walls = plan.walls["wall"]
+    depths_m = measure_reveals(plan, np.isin(walls, facades))
+    sigmas_m, within_m = (np.full(len(walls), of_m) for of_m in (_SHORT_M, _NOMINAL_M))
+    likely_m = depths_m + _SHORT_M
+    nominal_m = choose_sizes(likely_m, sigmas_m, within_m, settings.walls_m, plan.lengths_m)
+    rounded_m = _STEP_M * np.round(depths_m / _STEP_M)
+    thick_m = np.where(np.isfinite(nominal_m), nominal_m, rounded_m)
+    known = np.flatnonzero(np.isfinite(thick_m)).tolist()
+    return {int(walls[row]): float(thick_m[row]) for row in known}
 
 
 def _count_elements(plan: FloorPlan) -> int:
