@@ -14,14 +14,16 @@ from scanplan.errors import StageError
 from scanplan.exports import dxf
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import compose_sheet
-from scanplan.exports.sheet.facts import SheetFacts
+from scanplan.exports.sheet.facts import SheetFacts, state_frame
 from scanplan.exports.sheet.lettering import measure_width_mm
 from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Paper
+from scanplan.plan.floorplan import GeoReference
 from scanplan.project.words_file import read_layers, read_words
 
 SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
@@ -45,6 +47,28 @@ def sheets(locale):
 def test_nothing_on_a_sheet_stays_english(language):
     for number in range(len(sheets(ENGLISH))):
         assert find_english(lambda locale, of=number: sheets(locale)[of], language) == set()
+
+
+@pytest.mark.parametrize("language", ["en", *LANGUAGES])
+def test_a_title_block_holds_place_and_people_in_every_language(language):
+    locale = make_locale("ft" if language == "en" else "m", read_words(language))
+    measured = GeoReference("EPSG:25832", 0.0, 0.0, 0.0, 0.0234)
+    site = Site("EPSG:25832", 512_999.999, 5_401_999.999, turn_deg=130.0041)
+    facts = SheetFacts(
+        locale=locale,
+        author="A. Bee",
+        organisation="Bee",
+        frame=state_frame(site, measured, locale),
+    )
+    drawn = floorplan_making.plan(corrected_by="C. Dee, 2026-03-01")
+    words = compose_sheet(drawn, facts, turn_deg=-12.3).paper_words
+    values = [word for word in words if word.element.startswith(title.TITLE_TAG)]
+    assert not [word.text for word in values if word.text.endswith("…")]
+    for head in [word for word in words if word.kind == "note"]:
+        end = head.place[0] + measure_width_mm(head.text, head.size_mm)
+        of_row = [of for of in values if abs(of.place[1] - head.place[1]) < 2]
+        after = [of.place[0] for of in of_row if of.place[0] > head.place[0]]
+        assert not after or end < min(after)
 
 
 def test_attributes_in_cad_are_in_the_unit_and_language_and_words_of_a_person_are_not():

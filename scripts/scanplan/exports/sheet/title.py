@@ -36,7 +36,7 @@ _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b
 _NAMES += ("Earliest", "Latest", "Storey", "Author", "Organisation", "Corrected on site by")
 _NUMBER_MM = 6.0  # of the column of rooms' numbers, or as wide as one that somebody gave
 _UNSEEN = "-"  # instead of a size that nobody saw
-_HEAD_MM = 24.0  # beside a value of the title block: the longest head, and a gap
+_HEAD_MM = 24.0  # beside a value of the title block: the longest head of usual rows, and a gap
 
 
 def draw_frame(page: Page) -> Iterator[Mark]:
@@ -52,7 +52,9 @@ def draw_frame(page: Page) -> Iterator[Mark]:
 def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator[Mark | Word]:
     """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
     turned = round(page.turn_deg, 1) + 0.0
-    turn = f"turned by {turned:+.1f}° to the main walls" if turned else "not turned"
+    # where a place takes two lines there is room for no more
+    aim = "" if facts.frame else " to the main walls"
+    turn = f"turned by {turned:+.1f}°{aim}" if turned else "not turned"
     n_doubts = len(list_doubts(plan))
     contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
@@ -103,7 +105,8 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
                 yield _rule(x, top, x, bottom)
             said = page.locale.say(head)
             yield _word("note", said, x + Paper.GAP, (top + bottom) / 2, Letters.SMALL)
-            ends = (x + _HEAD_MM, x + width - Paper.GAP)
+            head_mm = measure_width_mm(said, Letters.SMALL) + 3 * Paper.GAP
+            ends = (x + max(_HEAD_MM, head_mm), x + width - Paper.GAP)
             text = clean_text(value if head in _NAMES else page.locale.say(value))
             yield from _draw_value(head, text, ends, (top + bottom) / 2)
             x += width
