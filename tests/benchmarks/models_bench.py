@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import ifcopenshell
 import numpy as np
 import shapely
 
@@ -157,13 +156,11 @@ def _read_lines(plan: Path) -> _Lines:
 def _key_by_number(file: Path, read: Callable[[Path], Drawing]) -> _Elements:
     """Return the elements of a file by kind and number in tables."""
     drawing = read(file)
-    model = ifcopenshell.open(file) if file.suffix == ".ifc" else None
+    ids = tables.read_table(file.parent / "ids.parquet", schemas.ELEMENT_IDS, allow_empty=True)
+    by_id = dict(zip(ids["global_id"].tolist(), ids["number"].tolist(), strict=True))
 
     def number_of(element: Element) -> int:
-        if model is None:
-            return int(element.key)
-        product = model.by_guid(element.key)
-        return int(product.Name if element.kind == "room" else product.Tag)
+        return int(element.key) if file.suffix != ".ifc" else int(by_id[element.key])
 
     of = [element for element in drawing.elements if element.kind != "furniture"]
     return {(element.kind, number_of(element)): element for element in of}
