@@ -45,6 +45,14 @@ def test_ends_that_do_not_quite_meet_make_the_same_corner(gap_m):
     assert the_same(meeting, apart)
 
 
+@pytest.mark.parametrize("line", [(8, 3, 7.56, 3), (7.56, 3, 8, 3)])
+def test_a_wall_shorter_than_thick_ones_reach_makes_one_corner(line):
+    """0.44 m long, and both 0.4 m thick: its far end is near the other wall's, too."""
+    long, short = bodies([(8, 0, 8, 3), line], 0.4)
+    assert the_same(long | short, shapely.box(7.8, 0, 8.2, 3.2) | shapely.box(7.56, 2.8, 8.2, 3.2))
+    assert shapely.intersection(long, short).area < 1e-9
+
+
 def test_ends_far_apart_make_no_corner():
     assert the_same(bodies([(0, 0, 4, 0), (4, 0.4, 4, 3)], 0.2)[1], shapely.box(3.9, 0.4, 4.1, 3))
 

@@ -173,7 +173,11 @@ def _find_joints(lines_m: FloatArray, half_m: FloatArray) -> _Joints:
     reach_m = half_m[end // 2] + half_m[wall] + END_M
     to_ends_m = np.hypot(*np.moveaxis(lines_m[wall] - ends_m[end][:, None], 2, 0))
     nearest = to_ends_m.argmin(axis=1)
-    is_corner = to_ends_m[np.arange(len(end)), nearest] <= reach_m
+    apart_m = to_ends_m[np.arange(len(end)), nearest]
+    # of a wall that is shorter than walls reach, one end is at the corner
+    met_m = lines_m[wall, nearest]
+    is_nearer = apart_m <= np.hypot(*(ends_m[end ^ 1] - met_m).T)
+    is_corner = (apart_m <= reach_m) & is_nearer
     first = end[is_corner]
     second = 2 * wall[is_corner] + nearest[is_corner]
     at_corner = np.unique(np.concatenate([first, second]))
