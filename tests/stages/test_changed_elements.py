@@ -145,7 +145,8 @@ def test_a_room_is_parted_by_a_line_that_is_drawn_nearly_from_wall_to_wall(plan)
         {"element": "room", "at": [3.0, 1.5], "name": "Hall"},
     )
     assert found.rooms["area_m2"] == pytest.approx([7.5, 9.0, 4.5])
-    assert found.room_names == ["Hall", "Room 1", "0.01 Store"]
+    assert found.room_labels == ["Hall", "Room 1", "0.01 Store"]
+    assert found.room_numbers == ["0", "1", "0.01"]
     # the entrance in the west is the new room's, the door in the east stays the other's
     sides = {n: (a, b) for n, a, b in zip(*(found.openings[c].tolist() for c in
              ("opening", "room_a", "room_b")), strict=True)}  # fmt: skip

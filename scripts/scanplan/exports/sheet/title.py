@@ -92,7 +92,7 @@ def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | W
     x0 = x1 - 3 * Paper.COLUMN
     y1 = y0 + TITLE_ROWS * Paper.ROW
     # the last row, on the frame's thick line, is the highest
-    height = min(_HEIGHT_MM, (y1 - y0 - _HEIGHT_MM) / (len(rows) - 1))
+    height = min(_HEIGHT_MM, (y1 - y0 - _HEIGHT_MM) / max(len(rows) - 1, 1))
     levels = [*np.arange(len(rows)) * -height + y1, y0]
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
     for number, row in enumerate(rows):
