@@ -66,13 +66,14 @@ def compare_openings(a: Survey, b: Survey, walls: Sequence[Change] = ()) -> list
     gone = [_judge_alone(of_a[i], a, b) for i in matched.lone_a if _is_known(of_a[i])]
     new = [_judge_alone(of_b[j], b, a) for j in matched.lone_b if _is_known(of_b[j])]
     turned = [wall.turned() for wall in walls]
-    return [
+    told = [
         *paired,
         *(_take_along(change, a, walls) for change in gone),
         *(_take_along(change, b, turned).turned() for change in new),
         *_judge_loose(a, b, of_b),
         *(change.turned() for change in _judge_loose(b, a, of_a)),
     ]
+    return [change.settled() for change in told]
 
 
 def _judge_loose(of: Survey, by: Survey, others: Sequence[Opening]) -> Iterator[Change]:

@@ -43,6 +43,9 @@ SIGMAS = 3.0
 """Standard deviations that a shift is larger than where it is told."""
 
 
+_NOWHERE = (math.nan, math.nan)
+
+
 @dataclass(frozen=True)
 class Change:
     """What became of an element, or of a part of it.
@@ -79,7 +82,7 @@ class Change:
     shape: BaseGeometry = field(repr=False)
     kind_a: str = ""
     kind_b: str = ""
-    moved_m: tuple[float, float] = (math.nan, math.nan)
+    moved_m: tuple[float, float] = _NOWHERE
     shift_m: float = math.nan
     sigma_m: float = math.nan
     doubt: str = ""
@@ -99,7 +102,19 @@ class Change:
     @property
     def is_doubtful(self) -> bool:
         """Whether it may be either, and is to be verified on site."""
-        return self.verdict in (*CHANGES, *STATES) and not self.is_told
+        return self.is_other and not self.is_told and self.p > 1 - LIKELY
+
+    @property
+    def is_other(self) -> bool:
+        """Whether something is likelier to have changed than not, of the building or not."""
+        return self.verdict in (*CHANGES, *STATES)
+
+    def settled(self) -> "Change":
+        """Return it as the same where that is likelier than that anything has changed."""
+        p = self.p + self.p_furniture
+        if not self.is_other or p > 1 / 2:
+            return self
+        return replace(self, verdict=SAME, p=1 - p, p_furniture=0.0, moved_m=_NOWHERE)
 
     def turned(self) -> "Change":
         """Return it as seen from the other survey: what is gone there is new here."""

@@ -75,7 +75,8 @@ def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
     gone = list(_compare(a, b, shifts))
     new = [change.turned() for change in _compare(b, a, shifts.turned())]
     # what faces of both show is told by the walls of a
-    return gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
+    new = [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
+    return [change.settled() for change in (*gone, *new)]
 
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
