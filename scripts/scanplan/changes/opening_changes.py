@@ -39,6 +39,7 @@ _WRONG = 0.06  # of edges that have not moved: 17 of 268 in five pairs lie beyon
 _SWINGS = 0.3  # of doors, like furniture: between two surveys some are opened or shut
 _HUNG = 0.5  # of leaves hang on the side that was seen, where they are as flush as a wall
 _BLIND = 0.05  # of what closes windows: panes and blinds are set back, curtains hang before
+_THROUGH = 0.02  # of those are as flush on the other side, too: a leaf is thinner than its wall
 
 _KINDS = ("door", "passage", "window", "glass")
 """Types that say what an opening is: a gap says that this is not known."""
@@ -239,9 +240,7 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
         return tell(NOT_SEEN, math.nan)
     flush = opening_sight.find_flush_sides(opening, of, by)
     is_flush = len(flush) > 0 and bool(flush.all())
-    p = verdicts.rate_places(views.n_ending, views.n_passing) * is_flush
-    # a leaf is thinner than its wall
-    p *= 1.0 if len(flush) > 1 else _rate_walled_up(opening.kind)
+    p = _rate_walled_up(views, len(flush), opening.kind) if is_flush else 0.0
     if p >= LIKELY:
         return tell(GONE, p)
     # whatever closes it, it is closed: which of the two is told apart by its other side alone
@@ -252,14 +251,20 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     return tell(SHUT, _rate_shut(views) * opening.held, doubt)
 
 
-def _rate_walled_up(kind: str) -> float:
-    """Return how likely it is walled up, by the one side that was seen, what is closed and flush.
+def _rate_walled_up(views: Views, n_flush: int, kind: str) -> float:
+    """Return how likely it is walled up, and neither shut nor open, what is flush on 1 or 2 sides.
 
-    >>> round(_rate_walled_up("door"), 2)
+    >>> round(_rate_walled_up(Views(True, n_ending=9), 1, "door"), 2)
     0.25
+    >>> round(_rate_walled_up(Views(True, n_ending=1), 2, "door"), 2)
+    0.93
     """
-    shut = _SWINGS * (_HUNG if kind in WAYS else _BLIND)
-    return verdicts.CHANGED / (verdicts.CHANGED + shut)
+    closed = verdicts.weigh_places(views.n_ending, views.n_passing)
+    hung = _HUNG if kind in WAYS else _BLIND
+    # what rays end at in one that is open is as rarely flush as a leaf
+    flush = (1 - _SWINGS - verdicts.CHANGED + _SWINGS * closed) * hung * _THROUGH ** (n_flush - 1)
+    walled_up = verdicts.CHANGED * closed
+    return walled_up / (walled_up + flush)
 
 
 def _rate_shut(views: Views) -> float:

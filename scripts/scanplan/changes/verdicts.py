@@ -141,9 +141,13 @@ def rate_places(n_for: int, n_against: int, usual: float = CHANGED) -> float:
     >>> round(rate_places(3, 0), 2), round(rate_places(1, 0), 2), round(rate_places(3, 3), 2)
     (0.97, 0.32, 0.05)
     """
-    net = max(-MOST_PLACES, min(MOST_PLACES, n_for - n_against))
-    odds = usual / (1 - usual) * _PLACE_TELLS**net
+    odds = usual / (1 - usual) * weigh_places(n_for, n_against)
     return odds / (1 + odds)
+
+
+def weigh_places(n_for: int, n_against: int) -> float:
+    """Return how many times as likely what some places show, and others deny, is if it is so."""
+    return _PLACE_TELLS ** max(-MOST_PLACES, min(MOST_PLACES, n_for - n_against))
 
 
 def rate_wall(p_wall: float, p_built_in: float, *, is_deep: bool = False) -> float:
