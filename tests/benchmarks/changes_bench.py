@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import shapely
 from grown_offices import GROWN, evaluate_grown
-from office_drawings import kind_of, turn_back
-from office_surveys import SURVEYS, make_plan, read_survey
+from office_drawings import BACK, kind_of
+from office_surveys import PARTS, SURVEYS, make_plan, read_survey
 from rebuilt_offices import Edit, list_edits
 from seen_edits import Stretch, cast_rays, find_shared
 from told_changes import OUTCOMES, Judged, judge, say
@@ -39,6 +39,9 @@ def bench(project: Path, folder: Path, names: Sequence[str]) -> None:
     for name in wanted:
         make_plan(project, folder, name)
     evaluate(folder, wanted)
+    for name in PARTS if not names else ():
+        make_plan(project, folder, name)
+        wanted.append(name)
     for pair in GROWN:
         if set(pair) <= set(wanted):
             evaluate_grown(project, folder, pair)
@@ -89,7 +92,7 @@ def _list_reached(folder: Path, name: str, made: set[Edit]) -> dict[Edit, BoolAr
     kind = _kind_of(name)
     is_later = kind != "a"
     if is_later:
-        rays = rays.moved(turn_back)
+        rays = rays.moved(BACK.move)
     walls = [
         (shapely.LineString(f["geometry"]["coordinates"]), f["properties"]["thickness_m"] / 2)
         for f in json.loads((folder / "drawings/a.geojson").read_text())["features"]

@@ -6,19 +6,23 @@ from typing import Any
 
 import numpy as np
 import shapely
-from office_drawings import Drawing, kind_of
+from office_drawings import BACK, Drawing, kind_of
 from office_surveys import read_survey
-from rebuilt_offices import draw
-from told_changes import NEAR_M
+from rebuilt_offices import is_earlier, list_edits, rebuild
+from told_changes import NEAR_M, fits
 
 from helpers.default_settings import SETTINGS
 from scanplan.arrays import array_plan
-from scanplan.changes import growth
+from scanplan.changes import growth, growth_table
 from scanplan.changes.joined_scans import JoinedScans
+from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 
-GROWN = (("part_vlp", "mix1_las"), ("mix1_las", "part_vlp"), ("a_las", "same_vlp"))
-"""Surveys of which one plan is made, of a scanner in space and a planar one, nothing changed."""
+GROWN = (
+    *(("part_vlp", "mix1_las"), ("mix1_las", "part_vlp"), ("a_las", "same_vlp")),
+    *(("west_vlp", "east_las"), ("west_las", "east_vlp"), ("west_vlp", "east_vlp")),
+)
+"""Surveys of which one plan is made: nothing changed between those of the first three."""
 _ON_M = 0.1  # of a wall that is drawn from the faces of a true one
 
 
@@ -31,26 +35,30 @@ def evaluate_grown(project: Path, folder: Path, names: Sequence[str]) -> None:
         return array_plan.rate_plan(made, joined), made.evidence
 
     grown = growth.grow_plan(known, SETTINGS, assemble)
-    changed = sum(c.is_change for step in grown.steps for c in step.changes)
-    print(f"grown, {' and '.join(names)}: {changed} told as changed")
-    truth = draw(project, names[0].partition("_")[0])
-    first_from_last = grown.steps[0].tie.fit.motion
-    for name, plan, move in (
-        (names[0], known[0][0], None),
-        (names[1], known[1][0], first_from_last.move),
-        ("both", grown.plan, None),
-    ):
-        print(f"grown, {name}: {_measure_drawn(plan, move, truth)}", flush=True)
+    (step,), kinds = grown.steps, [name.partition("_")[0] for name in names]
+    said = growth_table.summarise_growth(grown)
+    edits = list_edits(kinds[1]) if is_earlier(kinds[0]) else ()
+    likely = [c for c in step.changes if c.is_change and c.table in ("wall", "opening")]
+    n_right = sum(any(fits(c, edit) for edit in edits) for c in likely)
+    said.append(f"walls and openings told as changed: {len(likely)}, right: {n_right}")
+    for line in said:
+        print(f"grown, {' and '.join(names)}: {line}")
+    back = PlaneMotion() if is_earlier(kinds[0]) else BACK
+    parts = [
+        (names[0], known[0][0], back, kinds[0]),
+        (names[1], known[1][0], step.tie.fit.motion.then(back), kinds[1]),
+        ("both", grown.plan, back, kinds[1]),
+    ]
+    for name, plan, motion, kind in parts:
+        drawn = _measure_drawn(plan, motion, rebuild(project, kind))
+        print(f"grown, {name}: {drawn}", flush=True)
 
 
-def _measure_drawn(plan: FloorPlan, move: Any, truth: Drawing) -> str:
-    def place(shape: Any) -> Any:
-        return shapely.transform(shape, move) if move else shape
-
+def _measure_drawn(plan: FloorPlan, motion: PlaneMotion, truth: Drawing) -> str:
     walls = [f for f in truth["features"] if kind_of(f) == "wall" and "height_m" not in _own(f)]
     lines = [shapely.LineString(f["geometry"]["coordinates"]) for f in walls]
     reach_m = [_own(f)["thickness_m"] / 2 + _ON_M for f in walls]
-    drawn = place(shapely.union_all(shapely.linestrings(plan.wall_shapes.lines_m)))
+    drawn = shapely.union_all(shapely.linestrings(motion.move(plan.wall_shapes.lines_m)))
     found_m = sum(
         line.intersection(drawn.buffer(far_m)).length
         for line, far_m in zip(lines, reach_m, strict=True)
@@ -59,9 +67,9 @@ def _measure_drawn(plan: FloorPlan, move: Any, truth: Drawing) -> str:
     right_m = drawn.intersection(shapely.union_all(grounds)).length
     said = [f"{found_m:.0f} of {sum(line.length for line in lines):.0f} m of wall"]
     said.append(f"{drawn.length - right_m:.0f} m that are none")
-    middles = place(shapely.points(centrelines_m(plan.openings).mean(axis=1)))
+    middles_m = motion.move(centrelines_m(plan.openings).mean(axis=1))
     for kind in ("door", "window"):
-        placed = shapely.MultiPoint(middles[plan.openings["type"] == kind])
+        placed = shapely.MultiPoint(middles_m[plan.openings["type"] == kind])
         there = [_middle(f) for f in truth["features"] if _own(f).get("type") == kind]
         n_right = sum(middle.distance(placed) <= NEAR_M for middle in there if not placed.is_empty)
         said.append(f"{n_right} of {len(there)} {kind}s ({len(placed.geoms)} drawn)")

@@ -6,15 +6,16 @@ import random
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import numpy as np
 import shapely
 import shapely.affinity
 
-from scanplan.types import FloatArray
+from scanplan.changes.plane_motion import PlaneMotion
 
 Drawing = dict[str, Any]
 TURN_RAD, SHIFT_M = math.radians(40), (3.0, 0.5)
 """Of the frame of every later survey."""
+BACK = PlaneMotion(TURN_RAD, *SHIFT_M).inverse()
+"""To the frame of earlier ones."""
 
 
 def carry_furniture(drawing: Drawing, seed: int) -> None:
@@ -56,12 +57,6 @@ def turn_drawing(drawing: Drawing) -> Drawing:
     for feature in turned["features"]:
         feature["geometry"]["coordinates"] = turn(feature["geometry"]["coordinates"])
     return turned
-
-
-def turn_back(xy_m: FloatArray) -> FloatArray:
-    """Return places of later surveys in the frame of earlier ones, see `turn_drawing`."""
-    cosine, sine = math.cos(TURN_RAD), math.sin(TURN_RAD)
-    return (xy_m - SHIFT_M) @ np.array([[cosine, -sine], [sine, cosine]])
 
 
 def kind_of(feature: Drawing) -> str:

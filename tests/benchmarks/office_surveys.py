@@ -37,6 +37,8 @@ SURVEYS = (
 What is likely enough to be told was chosen on all but the last eight, and on surveys of floors that
 are drawn at random (drawn1_vlp: a seed and a sensor), which have to be named.
 """
+PARTS = ("west_vlp", "west_las", "east_vlp", "east_las")
+"""Of a part of the floor each, the later ones after walls, furniture and leaves were moved."""
 TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 """Of a plan: what is compared."""
 _DRAWN_SEEDS = 1000  # of surveys of floors that are drawn
@@ -47,7 +49,8 @@ def make_plan(project: Path, folder: Path, name: str) -> None:
     drawing = folder / f"drawings/{kind}.geojson"
     drawing.parent.mkdir(parents=True, exist_ok=True)
     drawing.write_text(json.dumps(draw(project, kind)))
-    seed = 1 + SURVEYS.index(name) if name in SURVEYS else _DRAWN_SEEDS + seed_of(kind)
+    known = (*SURVEYS, *PARTS)
+    seed = 1 + known.index(name) if name in known else _DRAWN_SEEDS + seed_of(kind)
     simulated: dict[str, Any] = {
         "building": str(drawing.resolve()),
         "seed": seed,
@@ -55,7 +58,7 @@ def make_plan(project: Path, folder: Path, name: str) -> None:
     }
     if kind == "same":
         simulated["site"] = {"route": "rooms"}
-    if kind.startswith("furn"):
+    if kind.startswith("furn") or kind == "east":
         simulated["site"] = {"leaves": 0.6}
     plan_survey(project, folder, name, simulated)
 

@@ -22,11 +22,16 @@ from scanplan.changes.verdicts import GONE, MOVED, NEW
 _LEAST_M = 0.1  # that a wall is moved by which ought to be told
 _PART_M = ((0.8, 5.95), (1.7, 5.95), (1.7, 8.6), (5.4, 8.6), (5.4, 3.0), (1.9, 3.0))
 _PART_ON_M = ((1.9, 5.95), (7.7, 5.95), (7.7, 3.6))
-"""Of a shorter way."""
+_EAST_M = (
+    *((4.0, 5.95), (5.4, 5.95), (5.4, 8.6), (5.4, 5.95), (10.3, 5.95), (10.3, 8.2), (10.3, 3.6)),
+    *((10.3, 5.95), (12.1, 5.95), (12.1, 2.4), (16.5, 2.4), (16.5, 8.8), (13.8, 8.8)),
+)
+_WAYS_M = {"part": (*_PART_M, *_PART_ON_M), "west": _PART_M, "east": _EAST_M}
+"""Of surveys that see a part of the floor."""
 DRAWN = "drawn"
 _DRAWN_CARRIED = 100  # seeds of furniture of floors that are drawn
 _OFFICE = Path(__file__).parents[2] / "config/buildings/demo_office.geojson"
-_CARRIED = {"furn": 3, "furn2": 5, "mix3": 7, "mix4": 11, "mix5": 13}
+_CARRIED = {"furn": 3, "furn2": 5, "mix3": 7, "mix4": 11, "mix5": 13, "east": 17}
 """Seeds of where furniture is carried to, by what was done."""
 
 
@@ -67,19 +72,33 @@ class Edit:
 
 
 def draw(project: Path, kind: str) -> Drawing:
-    """Return the demo office after what a kind of surveys has done to it."""
+    """Return the demo office after what a kind of surveys has done to it, in their frame."""
+    drawing = rebuild(project, kind)
+    return drawing if is_earlier(kind) else turn_drawing(drawing)
+
+
+def is_earlier(kind: str) -> bool:
+    """Return whether nothing has been done yet."""
+    return kind in ("a", "west")
+
+
+def rebuild(project: Path, kind: str) -> Drawing:
+    """Return the demo office after what a kind of surveys has done to it, in the frame before."""
     path = project / "config/buildings/demo_office.geojson"
     drawing: Drawing = json.loads(path.read_text(encoding="utf-8"))
-    rebuild = {
+    steps = {
         "mix1": _rebuild_first,
         "part": _rebuild_first,
+        "east": _rebuild_first,
         "mix2": _rebuild_second,
         "mix3": _rebuild_third,
         "mix4": _rebuild_fourth,
         "mix5": _rebuild_fifth,
     }
-    if kind in rebuild:
-        rebuild[kind](drawing)
+    if kind in steps:
+        steps[kind](drawing)
+    if kind in _WAYS_M:
+        find(drawing, "waypoints")["geometry"]["coordinates"] = list(_WAYS_M[kind])
     if kind.startswith(DRAWN):
         rebuild_office(drawing, seed_of(kind))
         carry_furniture(drawing, _DRAWN_CARRIED + seed_of(kind))
@@ -87,9 +106,7 @@ def draw(project: Path, kind: str) -> Drawing:
         carry_furniture(drawing, _CARRIED[kind])
     if kind.startswith(("mix", DRAWN)):
         drawing["features"] = [f for f in drawing["features"] if kind_of(f) != "waypoints"]
-    if kind == "part":
-        find(drawing, "waypoints")["geometry"]["coordinates"] = [*_PART_M, *_PART_ON_M]
-    return drawing if kind == "a" else turn_drawing(drawing)
+    return drawing
 
 
 def list_edits(kind: str) -> tuple[Edit, ...]:
@@ -158,6 +175,7 @@ EDITS: dict[str, tuple[Edit, ...]] = {
     ),
 }
 """What was done to walls and openings."""
+EDITS["east"] = EDITS["mix1"]
 EDITS["part"] = tuple(edit for edit in EDITS["mix1"] if edit.ends_m[0][0] < 11.25)
 """The shorter way leads past what is farther east."""
 

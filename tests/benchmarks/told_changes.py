@@ -71,7 +71,7 @@ def judge(changes: Sequence[Change], edits: Sequence[Edit], observable: set[Edit
     moved may also be gone and new.
     """
     likely = [c for c in changes if c.is_change and c.table in ("wall", "opening")]
-    right = [c for c in likely if any(_fits(c, edit) for edit in edits)]
+    right = [c for c in likely if any(fits(c, edit) for edit in edits)]
     wrong = [c for c in likely if c not in right]
     for change in wrong:
         print(f"  wrong: {change.table} {change.verdict} {change.shape.wkt[:70]} {change.p:.2f}")
@@ -91,13 +91,14 @@ def judge(changes: Sequence[Change], edits: Sequence[Edit], observable: set[Edit
             said = "" if edit in observable else ", not observable"
             print(f"  {outcome}{said}: {edit.table} {edit.verdict} {edit.ends_m}")
     for state in states:
-        if not any(_fits(state, edit) for edit in edits):
+        if not any(fits(state, edit) for edit in edits):
             print(f"  swung: {state.verdict} {state.shape.wkt[:70]} {state.p:.2f}")
     gone = sum(c.verdict == GONE for c in wrong)
     return Judged(len(right), len(likely), gone, became, observable)
 
 
-def _fits(change: Change, edit: Edit) -> bool:
+def fits(change: Change, edit: Edit) -> bool:
+    """Return whether a change is of the kind of an edit, and where that was made."""
     verdicts = {edit.verdict, GONE, NEW} if edit.verdict == MOVED else {edit.verdict}
     # a door in a wall that was taken away went with it
     is_of_table = change.table == edit.table or (edit.table == "wall" and edit.verdict == GONE)
@@ -107,7 +108,7 @@ def _fits(change: Change, edit: Edit) -> bool:
 
 
 def _is_found(edit: Edit, likely: Sequence[Change]) -> bool:
-    rows = [c.shape for c in likely if _fits(c, edit)]
+    rows = [c.shape for c in likely if fits(c, edit)]
     near = edit.line.buffer(NEAR_M + 0.1)
     return sum(row.intersection(near).length for row in rows) >= _FOUND * edit.line.length
 
