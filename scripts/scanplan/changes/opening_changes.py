@@ -93,7 +93,7 @@ def _judge_loose(of: Survey, by: Survey, others: Sequence[Opening]) -> Iterator[
 
 
 def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
-    """Return an opening that is open still, or gone if its wall is on both sides of it."""
+    """Return an opening that is open still, or gone as likely as its wall is beside it."""
     host = int(of.plan.openings["wall"][of.plan.openings["opening"] == alone.number_a][0])
     parts = [wall for wall in walls if wall.number_a == host]
     if alone.verdict != SAME or not parts:
@@ -101,11 +101,14 @@ def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
     jambs = shapely.get_point(alone.shape, [0, -1])
     far_m = shapely.distance(jambs[:, None], np.array([part.shape for part in parts]))
     beside = [parts[i] for i in far_m.argmin(axis=1).tolist()]
-    is_gone = far_m.min(axis=1).max() <= _BESIDE_M
-    if not is_gone or not all(part.verdict == GONE and part.is_change for part in beside):
+    if far_m.min(axis=1).max() > _BESIDE_M or any(part.verdict == NOT_SEEN for part in beside):
         return alone
-    least = min(beside, key=lambda part: part.p)
-    return replace(alone, verdict=GONE, p=least.p, p_furniture=least.p_furniture)
+    gone = [part for part in beside if part.verdict == GONE]
+    # what is between two parts has gone if both have, and else with one of them
+    p = sum(part.p for part in gone) / len(beside)
+    p_furniture = sum(part.p_furniture for part in gone) / len(beside)
+    taken = replace(alone, verdict=GONE, p=p, p_furniture=p_furniture)
+    return taken if p + p_furniture > 1 / 2 else alone
 
 
 def _is_known(opening: Opening) -> bool:
