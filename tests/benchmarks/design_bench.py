@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import changes_bench
 import design_prior_bench
 import ifcopenshell
 import ifcopenshell.util.unit
 import numpy as np
+import office_surveys
 
 from scanplan.design import as_built, design_reading, deviations
 from scanplan.design.deviations import DEVIATES, MISSING, Deviation
@@ -91,7 +91,7 @@ def bench(project: Path, settings: Settings, folder: Path, models: Path) -> None
             "seed": case.seed,
             "localiser": _LOCALISER,
         }
-        changes_bench.plan_survey(project, folder, name, simulated)
+        office_surveys.plan_survey(project, folder, name, simulated)
     evaluate(folder, models)
     designs = {name: models / case.model for name, case in CASES.items()}
     design_prior_bench.print_table(folder, designs, settings)
@@ -103,7 +103,7 @@ def evaluate(folder: Path, models: Path) -> None:
     invented = 0
     allowed = make_tolerances(read_tolerances("din_18202"))
     for name, case in CASES.items():
-        plan, scans = changes_bench.read_survey(folder / "results" / name)
+        plan, scans = office_surveys.read_survey(folder / "results" / name)
         for model in (_FZK, _DUPLEX):
             storeys = design_reading.read_design(models / model)
             try:

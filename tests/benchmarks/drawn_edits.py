@@ -13,7 +13,7 @@ from scanplan.changes.verdicts import GONE, MOVED, NEW
 
 Point = tuple[float, float]
 DrawnEdit = tuple[str, str, tuple[Point, Point], float, bool]
-"""As the fields of `changes_bench.Edit`."""
+"""As the fields of `rebuilt_offices.Edit`."""
 _SOUTH_M, _NORTH_M = (0.15, 4.9), (7.0, 11.85)
 """Between the faces of facade and corridor."""
 _MOST_DRAWS = 100

@@ -101,13 +101,15 @@ def _summarise(table: str, wholes: Sequence[Sequence[Change]]) -> str:
     said = []
     for verdict in (*CHANGES, *STATES, SAME, NOT_SEEN):
         found = [parts for parts in of_table if parts[0].verdict == verdict]
-        sure = [parts for parts in found if not parts[0].is_doubtful]
+        sure = [parts for parts in found if parts[0].is_told or not parts[0].is_other]
         if sure:
             length_m = sum(part.shape.length for parts in sure for part in parts)
             length = f" ({length_m:.1f} m)" if table == "wall" else ""
             said.append(f"{len(sure)} {verdict.replace('_', ' ')}{length}")
-        if doubtful := len(found) - len(sure):
+        if doubtful := sum(parts[0].is_doubtful for parts in found):
             said.append(f"{doubtful} maybe {verdict}")
+        if others := len(found) - len(sure) - doubtful:
+            said.append(f"{others} {verdict}, likely furniture")
     return f"{table}: {', '.join(said)}" if said else ""
 
 

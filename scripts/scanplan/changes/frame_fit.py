@@ -1,5 +1,6 @@
 """A motion between the frames of two surveys refined by their faces, with its covariance."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 
@@ -9,14 +10,17 @@ from scanplan.changes.plane_motion import PlaneMotion
 from scanplan.changes.seen_faces import FacePairs, SeenFaces, keep_nearest, pair_faces
 from scanplan.types import FloatArray
 
-_REACHES_M = (1.0, 0.5, 0.3, 0.3, 0.3)
+_NEAR_M = 0.3  # that faces of one wall are apart at most once frames are nearly tied
+_REACHES_M = (1.0, 0.5, _NEAR_M, _NEAR_M, _NEAR_M)
 """How far faces may be apart, round by round: first what votes are off by over a building."""
+_MODE_M = 0.02  # that one wall in two maps differs by, where a motion is looked for anew
 _BENT_M = 0.6  # what a map may be bent by, and walls may have moved by: both are told by as much
 _ROUNDS = 6  # of weights at each reach
 _TURN_RAD = np.radians(6)  # of faces against each other: short ones, and what votes are off by
 _LEAST_M = 0.3  # side by side: less tells no direction
 _ENOUGH_M = 2.0  # a longer face tells no more: what it errs by is that of its survey
 _LEAST_SCATTER_M = 0.005  # of one wall in two surveys: half of the noise of a range
+_MORE = 1.2  # times as many faces agree elsewhere: the motion that was found is none
 _HALF = 0.5  # of faces: as many may have moved, or be of other things
 _MOST = 0.75  # of walls: so many have not moved, so that what more of them differ by is bent maps
 _FITS = 3.0  # standard deviations: a face farther off has moved, or is another
@@ -55,7 +59,7 @@ class FrameFit:
     @property
     def near_m(self) -> float:
         """Length of faces that agree, or are as near as those that the motion was fitted to."""
-        is_near = np.abs(self.pairs.shift_m) <= _REACHES_M[-1]
+        is_near = np.abs(self.pairs.shift_m) <= _NEAR_M
         return float(self.pairs.length_m[is_near].sum())
 
     def sigmas_m(self, points_m: FloatArray, normals: FloatArray) -> FloatArray:
@@ -68,10 +72,43 @@ def fit_frame(a: SeenFaces, b: SeenFaces, motion: PlaneMotion) -> FrameFit:
     """Return the motion near a given one after which most faces of b lie on those of a.
 
     Every pair of faces is a measurement of the shift between them; those that are far off for
-    what all differ by count little, as their walls have moved.
+    what all differ by count little, as their walls have moved. Where most across one direction are
+    far off that is a rest, too: the motion is refined once more from where most faces agree.
     """
     centre_m = a.ends_m.mean(axis=(0, 1))
-    for reach_m in _REACHES_M:
+    motion = _descend(a, b, motion, centre_m, _REACHES_M)
+    moved = b.moved(motion)
+    rows, off_m, weight = _measure(a, moved, _pair(a, moved, _NEAR_M), centre_m)
+    shift_m = _find_mode(rows[:, :2], off_m, weight)
+    if shift_m.any():
+        motion = motion.then(PlaneMotion(0.0, *shift_m.tolist()))
+        motion = _descend(a, b, motion, centre_m, (_NEAR_M,))
+    return _conclude(a, b, motion, centre_m)
+
+
+def _find_mode(normals: FloatArray, off_m: FloatArray, weight: FloatArray) -> FloatArray:
+    """Return the shift (2,) after which most faces agree within what two maps differ by.
+
+    None, unless many more do: of a floor with few walls one may have moved.
+    """
+    steps_m = np.linspace(-_NEAR_M, _NEAR_M, round(2 * _NEAR_M / _MODE_M) + 1)
+    shifts_m = np.stack(np.meshgrid(steps_m, steps_m), axis=-1).reshape(-1, 2)
+    apart_m = (shifts_m @ normals.T + off_m) / _MODE_M
+    agree = np.exp(-0.5 * apart_m**2) @ weight
+    as_is = float(np.exp(-0.5 * (off_m / _MODE_M) ** 2) @ weight)
+    best = int(agree.argmax())
+    return shifts_m[best] if agree[best] > _MORE * as_is else np.zeros(2)
+
+
+def _descend(
+    a: SeenFaces,
+    b: SeenFaces,
+    motion: PlaneMotion,
+    centre_m: FloatArray,
+    reaches_m: Sequence[float],
+) -> PlaneMotion:
+    """Return the motion that faces lead to from a given one, each looked for within a reach."""
+    for reach_m in reaches_m:
         for _ in range(_ROUNDS):
             moved = b.moved(motion)
             pairs = _pair(a, moved, reach_m)
@@ -87,7 +124,7 @@ def fit_frame(a: SeenFaces, b: SeenFaces, motion: PlaneMotion) -> FrameFit:
             motion = motion.then(_about(centre_m, *step.tolist()))
             if np.abs(step).max() < 1e-7:
                 break
-    return _conclude(a, b, motion, centre_m)
+    return motion
 
 
 def _pair(a: SeenFaces, moved: SeenFaces, reach_m: float) -> FacePairs:

@@ -39,6 +39,7 @@ _WRONG = 0.06  # of edges that have not moved: 17 of 268 in five pairs lie beyon
 _SWINGS = 0.3  # of doors, like furniture: between two surveys some are opened or shut
 _HUNG = 0.5  # of leaves hang on the side that was seen, where they are as flush as a wall
 _BLIND = 0.05  # of what closes windows: panes and blinds are set back, curtains hang before
+_THROUGH = 0.02  # of those are as flush on the other side, too: a leaf is thinner than its wall
 
 _KINDS = ("door", "passage", "window", "glass")
 """Types that say what an opening is: a gap says that this is not known."""
@@ -66,13 +67,14 @@ def compare_openings(a: Survey, b: Survey, walls: Sequence[Change] = ()) -> list
     gone = [_judge_alone(of_a[i], a, b) for i in matched.lone_a if _is_known(of_a[i])]
     new = [_judge_alone(of_b[j], b, a) for j in matched.lone_b if _is_known(of_b[j])]
     turned = [wall.turned() for wall in walls]
-    return [
+    told = [
         *paired,
         *(_take_along(change, a, walls) for change in gone),
         *(_take_along(change, b, turned).turned() for change in new),
         *_judge_loose(a, b, of_b),
         *(change.turned() for change in _judge_loose(b, a, of_a)),
     ]
+    return [change.settled() for change in told]
 
 
 def _judge_loose(of: Survey, by: Survey, others: Sequence[Opening]) -> Iterator[Change]:
@@ -91,7 +93,7 @@ def _judge_loose(of: Survey, by: Survey, others: Sequence[Opening]) -> Iterator[
 
 
 def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
-    """Return an opening that is open still, or gone if its wall is on both sides of it."""
+    """Return an opening that is open still, or gone as likely as its wall is beside it."""
     host = int(of.plan.openings["wall"][of.plan.openings["opening"] == alone.number_a][0])
     parts = [wall for wall in walls if wall.number_a == host]
     if alone.verdict != SAME or not parts:
@@ -99,11 +101,14 @@ def _take_along(alone: Change, of: Survey, walls: Sequence[Change]) -> Change:
     jambs = shapely.get_point(alone.shape, [0, -1])
     far_m = shapely.distance(jambs[:, None], np.array([part.shape for part in parts]))
     beside = [parts[i] for i in far_m.argmin(axis=1).tolist()]
-    is_gone = far_m.min(axis=1).max() <= _BESIDE_M
-    if not is_gone or not all(part.verdict == GONE and part.is_change for part in beside):
+    if far_m.min(axis=1).max() > _BESIDE_M or any(part.verdict == NOT_SEEN for part in beside):
         return alone
-    least = min(beside, key=lambda part: part.p)
-    return replace(alone, verdict=GONE, p=least.p, p_furniture=least.p_furniture)
+    gone = [part for part in beside if part.verdict == GONE]
+    # what is between two parts has gone if both have, and else with one of them
+    p = sum(part.p for part in gone) / len(beside)
+    p_furniture = sum(part.p_furniture for part in gone) / len(beside)
+    taken = replace(alone, verdict=GONE, p=p, p_furniture=p_furniture)
+    return taken if p + p_furniture > 1 / 2 else alone
 
 
 def _is_known(opening: Opening) -> bool:
@@ -238,9 +243,7 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
         return tell(NOT_SEEN, math.nan)
     flush = opening_sight.find_flush_sides(opening, of, by)
     is_flush = len(flush) > 0 and bool(flush.all())
-    p = verdicts.rate_places(views.n_ending, views.n_passing) * is_flush
-    # a leaf is thinner than its wall
-    p *= 1.0 if len(flush) > 1 else _rate_walled_up(opening.kind)
+    p = _rate_walled_up(views, len(flush), opening.kind) if is_flush else 0.0
     if p >= LIKELY:
         return tell(GONE, p)
     # whatever closes it, it is closed: which of the two is told apart by its other side alone
@@ -251,14 +254,20 @@ def _judge_alone(opening: Opening, of: Survey, by: Survey) -> Change:
     return tell(SHUT, _rate_shut(views) * opening.held, doubt)
 
 
-def _rate_walled_up(kind: str) -> float:
-    """Return how likely it is walled up, by the one side that was seen, what is closed and flush.
+def _rate_walled_up(views: Views, n_flush: int, kind: str) -> float:
+    """Return how likely it is walled up, and neither shut nor open, what is flush on 1 or 2 sides.
 
-    >>> round(_rate_walled_up("door"), 2)
+    >>> round(_rate_walled_up(Views(True, n_ending=9), 1, "door"), 2)
     0.25
+    >>> round(_rate_walled_up(Views(True, n_ending=1), 2, "door"), 2)
+    0.93
     """
-    shut = _SWINGS * (_HUNG if kind in WAYS else _BLIND)
-    return verdicts.CHANGED / (verdicts.CHANGED + shut)
+    closed = verdicts.weigh_places(views.n_ending, views.n_passing)
+    hung = _HUNG if kind in WAYS else _BLIND
+    # what rays end at in one that is open is as rarely flush as a leaf
+    flush = (1 - _SWINGS - verdicts.CHANGED + _SWINGS * closed) * hung * _THROUGH ** (n_flush - 1)
+    walled_up = verdicts.CHANGED * closed
+    return walled_up / (walled_up + flush)
 
 
 def _rate_shut(views: Views) -> float:

@@ -13,7 +13,7 @@ from scanplan.changes.scan_plane import ROW_M, ScanPlane, are_one_plane
 from scanplan.geometry.lines import Line
 from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
-from scanplan.rays.tolerances import BEHIND_M, FEW, STRAY_SHARE
+from scanplan.rays.tolerances import FEW, STRAY_SHARE
 from scanplan.types import BoolArray, FloatArray, IntArray
 from scanplan.validation.clustered_shares import number_places
 
@@ -71,11 +71,17 @@ class Looks:
 
     @property
     def solid(self) -> BoolArray:
-        """Which cells (c, r) are solid: between others, those that no ray tells of, too."""
+        """Which cells (c, r) are solid: below others, those that no ray tells of, too.
+
+        A wall stands on the floor, unless rays go through below: then what is between others.
+        """
+        is_known = self.passes + self.hits > 0
         is_hit = (self.hits > 0) & (self.passes <= STRAY_SHARE * (self.hits + self.passes))
         is_above = np.logical_or.accumulate(is_hit, axis=1)
         is_below = np.logical_or.accumulate(is_hit[:, ::-1], axis=1)[:, ::-1]
-        return is_hit | (is_above & is_below & (self.passes + self.hits == 0))
+        # nothing free in all of the column below the lowest that is solid
+        is_free = np.logical_or.accumulate(is_known & ~is_hit & ~is_above, axis=1)[:, -1:]
+        return is_hit | (~is_known & is_below & (is_above | ~is_free))
 
 
 def look_at(
@@ -109,7 +115,7 @@ def look_at(
     places = number_places(rays.sensors_m[:, :2], _PLACE_M)[face.scan]
     told = np.column_stack([cell, row, places])
     ending = told[is_near & (np.abs(face.behind_m) <= at_m)]
-    passing = told[is_near & (face.behind_m > half_m + BEHIND_M + slack_m)]
+    passing = told[is_near & (face.behind_m > at_m)]
     shape = (n_cells, _count_rows(rays))
     return Looks(_count(ending, shape), _count(passing, shape), passing, ending)
 

@@ -1,13 +1,13 @@
 """Walls of a survey in cells along their lines, as another survey is asked about them."""
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
 
-from scanplan.changes import ray_cells, verdicts
+from scanplan.changes import ray_cells
 from scanplan.changes.ray_cells import CELL_M
 from scanplan.changes.surveys import Survey
 from scanplan.geometry.lines import Line
@@ -15,6 +15,7 @@ from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.types import FloatArray
 
 _MEETS_M = 0.3  # of a wall's end and another: as far as a plan draws them apart
+_THROUGH_M = 0.5  # of a wall's end beyond another that holds it: it is drawn, or built, through
 _BOW_M = 0.05  # of a piece of a curved wall: half of what rays are off by at a wall
 
 
@@ -57,11 +58,6 @@ class Wall:
         return shapely.LineString(self.line.at(np.array([cells.start, cells.stop]) * CELL_M))
 
     @property
-    def is_deep(self) -> bool:
-        """Whether it is as deep as furniture."""
-        return 2 * self.half_m >= verdicts.DEEP_M
-
-    @property
     def span_m(self) -> tuple[float, float]:
         """From where to where along its line."""
         return 0.0, self.n_cells * CELL_M
@@ -99,15 +95,33 @@ def _cut_lines(plan: FloorPlan, row: int) -> FloatArray:
     return np.stack([corners_m[:-1], corners_m[1:]], axis=1)
 
 
+def hold_walls(walls: Sequence[Wall], plan: FloorPlan, changed: Mapping[int, float]) -> list[Wall]:
+    """Return walls as those hold them that stand in both surveys: a cupboard's sides come as one.
+
+    Parameters
+    ----------
+    changed : dict of int to float
+        How likely each wall has changed, by its number.
+    """
+    rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
+    numbers = plan.walls["wall"].tolist()
+    stands = rated * [1 - changed.get(number, 0.0) for number in numbers]
+    held = {number: _rate_met(plan, row, stands) for row, number in enumerate(numbers)}
+    return [replace(wall, p_met=held[wall.number]) for wall in walls]
+
+
 def _rate_met(plan: FloorPlan, row: int, rated: FloatArray) -> tuple[float, float]:
     """Return how likely what meets the ends of a wall is a wall, 0 where nothing does.
 
     Of two others: by one alone a short piece has both ends.
     """
     others = np.delete(np.arange(len(rated)), row)
+    ends_m = centrelines_m(plan.walls)[row]
+    inner_m = min(_THROUGH_M / max(float(plan.lengths_m[row]), _THROUGH_M), 1 / 3)
+    way_m = inner_m * (ends_m[::-1] - ends_m)
     met = [
         others[shapely.dwithin(end, plan.bodies[others], _MEETS_M)]
-        for end in shapely.points(centrelines_m(plan.walls)[row])
+        for end in map(shapely.LineString, np.stack([ends_m, ends_m + way_m], axis=1))
     ]
     both = [(float(rated[i]), float(rated[j])) for i in met[0] for j in met[1] if i != j]
     return max(both, key=math.prod, default=(0.0, 0.0))

@@ -1,7 +1,6 @@
 """Walls of two surveys compared: stretch by stretch, by their faces first, then by rays."""
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +12,7 @@ from scanplan.changes.face_shifts import FaceShifts
 from scanplan.changes.ray_cells import AT_M, CELL_M
 from scanplan.changes.surveys import Survey
 from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, SAME, SIGMAS, Change
-from scanplan.changes.wall_cells import Wall, list_walls
+from scanplan.changes.wall_cells import Wall, hold_walls, list_walls
 from scanplan.changes.wall_rays import (
     HIT,
     IN_OPENING,
@@ -23,43 +22,15 @@ from scanplan.changes.wall_rays import (
     UNKNOWN,
     Stretch,
     doubt_kind,
-    judge_rays,
+    tell_rays,
+    weigh_rays,
 )
+from scanplan.changes.wall_shifts import WallShifts, find_shifts
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _LEAST_M = 0.3  # of a stretch: a shorter one may be a jamb, or what ends err by
 _OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the other survey has it
-_LIKE_M = 0.03  # what the two sides of a wall have moved by alike, beside what they err by
-_COSINE = math.cos(math.radians(20))  # of faces of one piece: those of others are turned
-
-
-@dataclass(frozen=True, eq=False)
-class _Shifts:
-    """What faces of the other survey show of the cells of a wall, (c,) each.
-
-    Attributes
-    ----------
-    shift_m : float64
-        How far it lies to the left, NaN where it has no face there.
-    sigma_m : float64
-    n_shown : int64
-        How many show it, see `verdicts.rate_shift`.
-    number : int64
-        Of its wall, -1 of none.
-    is_vacated : bool
-        Whether returns of the other survey lie behind a face of it: it does not stand there.
-    """
-
-    shift_m: FloatArray
-    sigma_m: FloatArray
-    n_shown: IntArray
-    number: IntArray
-    is_vacated: BoolArray
-
-    @property
-    def is_moved(self) -> BoolArray:
-        return np.abs(self.shift_m) > SIGMAS * self.sigma_m
 
 
 def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
@@ -75,16 +46,72 @@ def compare_walls(a: Survey, b: Survey, shifts: FaceShifts) -> list[Change]:
     gone = list(_compare(a, b, shifts))
     new = [change.turned() for change in _compare(b, a, shifts.turned())]
     # what faces of both show is told by the walls of a
-    return gone + [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
+    new = [change for change in new if change.number_a < 0 and np.isnan(change.shift_m)]
+    return [change.settled() for change in (*gone, *new)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """A wall in stretches, with what faces and rays of another survey show of each.
+
+    Attributes
+    ----------
+    wall : Wall
+    found : WallShifts
+    is_open : (c,) bool
+        Which of its cells are in its own openings.
+    stretches : sequence of Stretch
+    rated : sequence of float
+        How likely each has changed.
+    """
+
+    wall: Wall
+    found: WallShifts
+    is_open: BoolArray
+    stretches: Sequence[Stretch]
+    rated: Sequence[float]
+
+    @property
+    def p_cells(self) -> FloatArray:
+        """How likely each cell has changed, (c,) float64; what was not seen may have stood."""
+        found = np.zeros(self.wall.n_cells)
+        for stretch, p in zip(self.stretches, self.rated, strict=True):
+            found[stretch.cells] = p if stretch.kind != UNKNOWN else 0.0
+        return found
+
+    @property
+    def p_away(self) -> float:
+        """How likely it is one that the other survey has not, moved or not."""
+        is_away = ~self.is_open & ~np.isfinite(self.found.shift_m)
+        return float(np.where(is_away, self.p_cells, 0.0)[~self.is_open].mean())
 
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     """Yield what another survey shows of the walls of one."""
     others = {wall.number: wall for wall in list_walls(by)}
+    judged = list(_judge_walls(of, by, shifts))
+    # of a curved one each piece
+    away: dict[int, float] = {}
+    for each in judged:
+        away[each.wall.number] = max(away.get(each.wall.number, 0.0), each.p_away)
+    held = hold_walls([each.wall for each in judged], of.plan, away)
+    for each, wall in zip(judged, held, strict=True):
+        for stretch, p in zip(each.stretches, each.rated, strict=True):
+            if stretch.kind == MATCHED:
+                yield from _judge_shift(each.wall, stretch.cells, each.found, others)
+                continue
+            with_it = each.p_cells
+            with_it[stretch.cells] = 1.0
+            p_built_in = wall.rate_built_in(float(with_it[~each.is_open].mean()))
+            p_wall = verdicts.rate_wall(wall.p_true, p_built_in, 2 * wall.half_m)
+            yield tell_rays(stretch, p, p_wall)
+
+
+def _judge_walls(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[_Judged]:
     sigma_m = float(np.median(shifts.sigma_m)) if len(shifts.sigma_m) else AT_M / SIGMAS
     own_m, others_m = (s.motion.move(centrelines_m(s.plan.openings)) for s in (of, by))
     for wall in list_walls(of):
-        found = _find_shifts(wall, shifts)
+        found = find_shifts(wall, shifts)
         earlier, later = (s.sight.look_at(wall.line, wall.span_m, wall.half_m) for s in (of, by))
         compared = ray_cells.compare_looks(earlier, later)
         state = np.select(
@@ -99,21 +126,21 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             UNKNOWN,
         )
         is_open = _cover(wall, own_m[of.plan.openings["wall"] == wall.number])
-        parts = list(_part(state, is_open, found.is_moved))
+        parts = [part for part in _part(state, is_open, found.is_moved) if part[0] != IN_OPENING]
         gone_m = sum(_length_m(cells) for kind, cells in parts if kind == PASSED)
-        is_changed = np.isin(state, (PASSED, LOWERED)) | found.is_moved
+        stretches: list[Stretch] = []
         for kind, cells in parts:
+            stretch = Stretch(wall, cells, kind)
             # what is left beside a wall that is gone is no part of it that has moved
-            is_rest = _length_m(cells) < gone_m
-            if kind == MATCHED and not (is_rest and found.is_moved[cells].any()):
-                yield from _judge_shift(wall, cells, found, others)
-            elif kind != IN_OPENING:
-                with_it = is_changed.copy()
-                with_it[cells] = True
-                p_built_in = wall.rate_built_in(float(with_it[~is_open].mean()))
-                p_wall = verdicts.rate_wall(wall.p_true, p_built_in, is_deep=wall.is_deep)
-                stretch = Stretch(wall, cells, kind, p_wall, is_rest)
-                yield judge_rays(stretch, (of, by), compared, sigma_m)
+            is_rest = _length_m(cells) < gone_m and bool(found.is_moved[cells].any())
+            if kind == MATCHED and not is_rest:
+                weight = verdicts.weigh_shift(*found.sum_up(cells))
+                stretches.append(replace(stretch, weight=weight))
+            else:
+                stretch = replace(stretch, kind=HIT if kind == MATCHED else kind)
+                stretches.append(weigh_rays(stretch, (of, by), compared, sigma_m))
+        rated = verdicts.rate_along([stretch.weight for stretch in stretches])
+        yield _Judged(wall, found, is_open, stretches, rated.tolist())
 
 
 def _cover(wall: Wall, openings_m: FloatArray) -> BoolArray:
@@ -123,42 +150,6 @@ def _cover(wall: Wall, openings_m: FloatArray) -> BoolArray:
     along_m = along_m[off_m <= _OPENING_M + wall.half_m]
     is_in = (along_m[:, :1] <= wall.middle_m) & (wall.middle_m <= along_m[:, 1:])
     return np.any(is_in, axis=0)
-
-
-def _find_shifts(wall: Wall, shifts: FaceShifts) -> _Shifts:
-    pairs = shifts.pairs
-    shift_m, sigma_m = np.full((2, 2, wall.n_cells), np.nan)
-    number = np.full(wall.n_cells, -1, np.int64)
-    n_returns = np.zeros(wall.n_cells, np.int64)
-    is_vacated = np.zeros(wall.n_cells, bool)
-    turned = np.abs(shifts.faces.normal[pairs.a] @ wall.line.normal)
-    rows = np.flatnonzero((shifts.faces.wall[pairs.a] == wall.number) & (turned >= _COSINE))
-    # the longest last, so that it stands where several lie over one another
-    for row in rows[np.argsort(pairs.length_m[rows], kind="stable")].tolist():
-        face = int(pairs.a[row])
-        centre_m, along = shifts.faces.ends_m[face].mean(axis=0), shifts.faces.along[face]
-        ends_m = centre_m + np.array([[pairs.low_m[row]], [pairs.high_m[row]]]) * along
-        low_m, high_m = np.sort(wall.line.along_m(ends_m))
-        cells = (low_m <= wall.middle_m) & (wall.middle_m <= high_m)
-        is_left = float(shifts.faces.normal[face] @ wall.line.normal) > 0
-        side = 0 if is_left else 1
-        shift_m[side, cells] = pairs.shift_m[row] if is_left else -pairs.shift_m[row]
-        sigma_m[side, cells] = shifts.sigma_m[row]
-        n_returns[cells] = int(shifts.is_confirmed[row])
-        is_vacated[cells] |= bool(shifts.is_confirmed[row]) and float(pairs.shift_m[row]) < 0
-        other = shifts.others.wall[pairs.b[row]]
-        number[cells] = np.where(other >= 0, other, number[cells])
-    known = np.isfinite(shift_m)
-    n_sides = known.sum(axis=0)
-    is_known = n_sides > 0
-    mean_m, of_mean_m = (
-        np.where(is_known, np.nansum(values, axis=0) / np.maximum(n_sides, 1), np.nan)
-        for values in (shift_m, sigma_m)
-    )
-    # of sides that have not moved alike one may be lined, or measured wrongly
-    apart = np.abs(shift_m[0] - shift_m[1]) > SIGMAS * of_mean_m + _LIKE_M
-    n_shown = np.where(apart, 1, n_sides) + n_returns
-    return _Shifts(mean_m, of_mean_m, n_shown, number, is_vacated)
 
 
 def _part(state: IntArray, is_open: BoolArray, is_moved: BoolArray) -> Iterator[tuple[int, slice]]:
@@ -195,17 +186,15 @@ def _length_m(cells: slice) -> float:
 
 
 def _judge_shift(
-    wall: Wall, cells: slice, found: _Shifts, others: Mapping[int, Wall]
+    wall: Wall, cells: slice, found: WallShifts, others: Mapping[int, Wall]
 ) -> Iterator[Change]:
     """Yield what became of a stretch beside which the other survey has faces."""
     known = np.flatnonzero(np.isfinite(found.shift_m[cells])) + cells.start
-    shift_m, sigma_m = (
-        float(np.median(values[known])) for values in (found.shift_m, found.sigma_m)
-    )
+    shift_m, sigma_m, n_shown = found.sum_up(cells)
     numbers = found.number[known]
     numbers = numbers[numbers >= 0]
     other = int(np.bincount(numbers).argmax()) if len(numbers) else -1
-    p = verdicts.rate_shift(shift_m, sigma_m, int(np.median(found.n_shown[known])))
+    p = verdicts.rate_shift(shift_m, sigma_m, n_shown)
     same = Change(
         "wall",
         wall.number,

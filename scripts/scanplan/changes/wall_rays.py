@@ -9,7 +9,7 @@ from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.ray_cells import AT_M, CELL_M, Later
 from scanplan.changes.scan_plane import are_one_plane
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import CHANGED, GONE, LIKELY, NOT_SEEN, SAME, Change
+from scanplan.changes.verdicts import CHANGED, GONE, LIKELY, NOT_SEEN, Change
 from scanplan.changes.wall_cells import Wall
 from scanplan.geometry.lines import Line
 from scanplan.rays.tolerances import FEW
@@ -17,8 +17,8 @@ from scanplan.types import FloatArray
 
 MATCHED, IN_OPENING, PASSED, LOWERED, HIT, UNKNOWN, BEHIND = range(7)
 """What another survey shows of a cell of a wall; `BEHIND` of a stretch that rays end behind."""
-_REMOVED = 0.5  # of walls that rays go over now: of others the upper part went, as for a hatch
-_REST = 1 - CHANGED  # likewise where more of the wall is gone: parts of a wall rarely stay, either
+_LOWERED = CHANGED / 5  # of walls: the upper part went, as for a hatch
+_STANDS = 0.1  # of where a wall went: something else stands there
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,21 +31,20 @@ class Stretch:
     cells : slice
     kind : int
         What that shows: `PASSED` and so on.
-    p_wall : float
-        How likely it is a wall, if it has changed.
-    is_rest : bool
-        Whether more of the wall than this is gone.
+    weight : float
+        How many times as likely that is if it has changed.
     """
 
     wall: Wall
     cells: slice
     kind: int
-    p_wall: float
-    is_rest: bool
+    weight: float = 1.0
 
 
-def judge_rays(of: Stretch, surveys: tuple[Survey, Survey], later: Later, sigma_m: float) -> Change:
-    """Return what became of a stretch of a wall of the first survey by rays of the second.
+def weigh_rays(
+    of: Stretch, surveys: tuple[Survey, Survey], later: Later, sigma_m: float
+) -> Stretch:
+    """Return a stretch of a wall of the first survey with what rays of the second show of it.
 
     Parameters
     ----------
@@ -58,27 +57,32 @@ def judge_rays(of: Stretch, surveys: tuple[Survey, Survey], later: Later, sigma_
     is_of_it[of.cells] = True
     if of.kind == LOWERED:
         n_over = len(np.unique(later.over[is_of_it[later.over[:, 0]], 2]))
-        p = verdicts.rate_places(n_over, 0) * _rate_removed(of, surveys[1], sigma_m)
-        return _tell_gone(of, p, "what stands there now is lower")
-    kind = of.kind
+        over = verdicts.weigh_passing(n_over, 0)
+        # either has gone with all that was over it: the wall, or its upper part
+        lower = _LOWERED * over / (1 - CHANGED) + 1
+        return replace(of, weight=over * _weigh_returns(of, surveys[1], sigma_m) / lower)
     n_passing, n_ending = later.count_places(is_of_it)
-    if kind != PASSED and _lies_behind(of, surveys):
+    if of.kind != PASSED and _lies_behind(of, surveys):
         # they went through its face, all of them
-        kind, n_passing, n_ending = BEHIND, n_passing + n_ending, 0
-    p = verdicts.rate_places(n_passing, n_ending)
-    if kind in (PASSED, BEHIND, MATCHED) and p > 0.5:
-        return _tell_gone(of, p)
-    same = Change("wall", of.wall.number, -1, SAME, 1 - p, of.wall.draw(of.cells))
-    return same if kind in (HIT, BEHIND) else replace(same, verdict=NOT_SEEN, p=math.nan)
+        return replace(of, kind=BEHIND, weight=verdicts.weigh_passing(n_passing + n_ending, 0))
+    weight = verdicts.weigh_passing(n_passing, n_ending)
+    if of.kind == HIT:
+        stands = _STANDS * _weigh_returns(of, surveys[1], sigma_m)
+        weight = max(weight, min(stands, 1.0))
+    return replace(of, weight=1.0 if of.kind == UNKNOWN else weight)
 
 
-def _tell_gone(of: Stretch, p: float, doubt: str = "") -> Change:
-    """Return that a stretch is gone: rays tell that, its plan whether it is a wall."""
-    p_wall = p * of.p_wall
-    if p >= LIKELY or not doubt:
-        doubt = "" if p_wall >= LIKELY else doubt_kind(p, of.p_wall)
-    gone = Change("wall", of.wall.number, -1, GONE, p_wall, of.wall.draw(of.cells), doubt=doubt)
-    return replace(gone, p_furniture=p - p_wall)
+def tell_rays(of: Stretch, p: float, p_wall: float) -> Change:
+    """Return what became of a stretch by how likely it has changed, and is a wall if it has."""
+    shape = of.wall.draw(of.cells)
+    if of.kind == UNKNOWN:
+        return Change("wall", of.wall.number, -1, NOT_SEEN, math.nan, shape)
+    # rays tell that it is gone, its plan whether it is a wall
+    doubt = doubt_kind(p, p_wall) if p > 1 / 2 and p * p_wall < LIKELY else ""
+    if of.kind == LOWERED and p < LIKELY:
+        doubt = "what stands there now is lower"
+    gone = Change("wall", of.wall.number, -1, GONE, p * p_wall, shape, doubt=doubt)
+    return replace(gone, p_furniture=p * (1 - p_wall))
 
 
 def doubt_kind(p: float, p_wall: float) -> str:
@@ -86,18 +90,16 @@ def doubt_kind(p: float, p_wall: float) -> str:
     return f"wall {p * p_wall:.2f}, furniture {p * (1 - p_wall):.2f}"
 
 
-def _rate_removed(of: Stretch, survey: Survey, sigma_m: float) -> float:
-    """Return how likely what stands lower now is no part of the wall.
+def _weigh_returns(of: Stretch, survey: Survey, sigma_m: float) -> float:
+    """Return how many times as likely what stands there now lies so if it is no part of the wall.
 
     Returns of what is left of a wall lie on its faces, those of furniture anywhere.
     """
     off_m = [np.abs(of_side[np.isfinite(of_side)]) for of_side in _place_returns(of, survey)]
     off_m = [of_side for of_side in off_m if len(of_side) >= FEW]
-    usual = _REST if of.is_rest else _REMOVED
     if not off_m:
-        return usual
-    apart_m = float(np.median(np.concatenate(off_m)))
-    return verdicts.rate_shift(apart_m, sigma_m, len(off_m), usual=usual)
+        return 1.0
+    return verdicts.weigh_shift(float(np.median(np.concatenate(off_m))), sigma_m, len(off_m))
 
 
 def _lies_behind(of: Stretch, surveys: tuple[Survey, Survey]) -> bool:
