@@ -25,14 +25,14 @@ class Outline:
         sides = shapely.linestrings(np.stack([self._begins_m, self._ends_m], axis=1))
         self._tree = shapely.STRtree(np.asarray(sides, object))
 
-    def cast(self, place_m: FloatArray, ways: FloatArray, reach_m: float) -> FloatArray:
+    def cast(self, place_m: FloatArray, directions: FloatArray, reach_m: float) -> FloatArray:
         """Return how far (n,) it is from a place along unit vectors (n, 2); inf: beyond reach."""
         place = shapely.Point(place_m)
         near = self._tree.query(place, predicate="dwithin", distance=reach_m)
         to_begin_m, to_end_m = self._begins_m[near] - place_m, self._ends_m[near] - place_m
-        normals = np.column_stack([-ways[:, 1], ways[:, 0]])
+        normals = np.column_stack([-directions[:, 1], directions[:, 0]])
         begin_off_m, end_off_m = normals @ to_begin_m.T, normals @ to_end_m.T
-        begin_along_m, end_along_m = ways @ to_begin_m.T, ways @ to_end_m.T
+        begin_along_m, end_along_m = directions @ to_begin_m.T, directions @ to_end_m.T
         is_crossed = (begin_off_m > 0) != (end_off_m > 0)
         over_m = np.where(is_crossed, begin_off_m - end_off_m, 1.0)
         along_m = begin_along_m + begin_off_m / over_m * (end_along_m - begin_along_m)
@@ -61,13 +61,13 @@ class Outline:
             for row in np.flatnonzero((turn_rad <= -_LEAST_TURN_RAD) & is_side):
                 span_rad = math.pi + turn_rad[row]
                 steps_rad = np.linspace(0, span_rad, int(span_rad / _STEP_RAD) + 2)
-                way_rad = np.angle(_complex(into_m[row])) + steps_rad
-                ways = np.column_stack([np.cos(way_rad), np.sin(way_rad)])
-                length_m = self.cast(ring_m[row], ways, reach_m)
+                heading_rad = np.angle(_complex(into_m[row])) + steps_rad
+                directions = np.column_stack([np.cos(heading_rad), np.sin(heading_rad)])
+                length_m = self.cast(ring_m[row], directions, reach_m)
                 inner_m = length_m[1:-1]
                 is_short = np.isfinite(length_m)
                 is_short[1:-1] &= (inner_m <= length_m[:-2]) & (inner_m <= length_m[2:])
-                tips_m = ring_m[row] + length_m[is_short, None] * ways[is_short]
+                tips_m = ring_m[row] + length_m[is_short, None] * directions[is_short]
                 begin_m = np.broadcast_to(ring_m[row], tips_m.shape)
                 found.append(np.stack([begin_m, tips_m], axis=1))
         return np.concatenate(found)

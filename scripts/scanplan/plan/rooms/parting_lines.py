@@ -148,12 +148,12 @@ def measure_lines(
         reach_m = _WIDER * length
         for column, side in enumerate((1, -1)):
             across = side * np.array([-along[1], along[0]])
-            ways = np.array([along, -along])
+            directions = np.array([along, -along])
             widths_m = [0.0]
             for times, least_m in _AWAY:
                 place_m = middle_m + max(times * length, least_m) * across
                 if shapely.contains_xy(ground, *place_m):
-                    widths_m.append(float(outline.cast(place_m, ways, reach_m).sum()))
+                    widths_m.append(float(outline.cast(place_m, directions, reach_m).sum()))
             depth_m = float(outline.cast(middle_m, across[None], reach_m)[0])
             beside[row, column] = max(widths_m) / length
             deep[row, column] = min(max(widths_m), depth_m) / length
