@@ -61,6 +61,7 @@ _FURNITURE: dict[str, Rule] = {
 }
 
 _BOUNDS = "plan.rooms.room_bounds"
+_PARTINGS = "plan.rooms.partings"
 _OUTLINES = "plan.rooms.room_outlines"
 _ROOMS: dict[str, Rule] = {
     "glass walls": make_rule(
@@ -70,20 +71,10 @@ _ROOMS: dict[str, Rule] = {
         f"{_BOUNDS}:_cut_known",
         f"{_BOUNDS}:_extend",
     ),
-    "narrow places": make_rule(
-        "geometry.narrow_places:find_narrow_places", find_none, "geometry.narrow_places"
-    ),
-    "islands in narrow places": make_rule("geometry.narrow_places:_fill_islands", give_back(0)),
-    "line gaps": make_rule(
-        f"{_BOUNDS}:_find_line_gaps",
-        find_none,
-        f"{_BOUNDS}:_find_line_gaps",
-        f"{_BOUNDS}:_find_free_line",
-        f"{_BOUNDS}:_solid_m",
-        "geometry.narrow_places:_choose_gaps",
-    ),
-    "partings on lines of walls": make_rule(f"{_BOUNDS}:_snap", give_back(0)),
-    "doors by their leaves": make_rule(f"{_BOUNDS}:_choose_ways", find_none),
+    "partings": make_rule(f"{_PARTINGS}:_list_grounds", find_none, f"{_PARTINGS}:_list_grounds"),
+    "islands in floor": make_rule(f"{_PARTINGS}:_fill_islands", give_back(0)),
+    "partings on lines of walls": make_rule(f"{_PARTINGS}:_snap", give_back(0)),
+    "doors by their leaves": make_rule(f"{_PARTINGS}:_choose_ways", find_none),
     "shadows of chairs": make_rule(
         "rays.free_space:close_shadows",
         give_back(0),

@@ -57,7 +57,7 @@ def score(plan: Path, results: Path, settings: Settings) -> dict[str, float]:
     """
     if find_truth(results) is None:
         return _count(plan, results, settings)
-    placed = replace(_place(results), folder=plan.parent)
+    placed = replace(place(results), folder=plan.parent)
     measures = score_files.score_results(placed).measures
     # where the truth is a part of a floor, some are not asked
     known = {name: float(measures.get(name, math.nan)) for name in HEADLINES}
@@ -84,7 +84,7 @@ def find_truth(results: Path) -> Recorded | None:
 
 
 @lru_cache(maxsize=1)
-def _place(results: Path) -> score_files.Placed:
+def place(results: Path) -> score_files.Placed:
     """Return the finished results beside their truth: seconds, the same for all rules."""
     recorded = find_truth(results)
     assert recorded is not None

@@ -8,6 +8,7 @@ Usage: run.py [simulation] [registration] [selection] [walls] [wall_quality] [pl
        run.py compare FOLDER FOLDER
        run.py ablate FOLDER [SURVEY | HALF | KIND | subset | RULE ...]
        run.py fit_things FOLDER [HALF | KIND | FLOOR ...]
+       run.py fit_partings FOLDER [HALF | KIND | FLOOR ...]
        run.py confidence FOLDER
        run.py next_visit FOLDER [SURVEY ...]
        run.py changes FOLDER [SURVEY ...]
@@ -47,7 +48,8 @@ reported on is left out.
 
 `fit_things` fits what tells walls from leaves, furniture and what is outside on the tuning floors
 that `realistic` has finished in FOLDER, and prints the table for `plan/model/things.py`, and what
-it is worth on kinds of buildings that it was not fitted on.
+it is worth on kinds of buildings that it was not fitted on; `fit_partings` likewise what parts
+rooms, for `plan/model/parting_odds.py`.
 
 `confidence` fits how likely elements of a plan are right on the tuning floors that `realistic` has
 finished in FOLDER, prints how well that holds on the others, and writes the coefficients into the
@@ -223,6 +225,13 @@ def fit_things(folder: str, *names: str) -> None:
     fit_things.bench(Path(folder), names, SETTINGS)
 
 
+def fit_partings(folder: str, *names: str) -> None:
+    """Weights of what parts rooms."""
+    import fit_partings
+
+    fit_partings.bench(Path(folder), names, SETTINGS)
+
+
 def fit_confidence(folder: str) -> None:
     """Write the coefficients of the confidence in a plan's elements."""
     import confidence_bench
@@ -373,6 +382,7 @@ APART: dict[str, Callable[..., None]] = {
     "table": print_table,
     "compare": compare_guards,
     "fit_things": fit_things,
+    "fit_partings": fit_partings,
     "confidence": fit_confidence,
     "next_visit": bench_next_visit,
     "odometry": bench_odometry,

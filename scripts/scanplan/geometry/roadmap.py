@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.geometry.watershed import Cells, list_cells
+from scanplan.geometry.ground_grid import Cells, list_cells
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 _MARGIN_M = 0.02  # beyond the stated clearance, so that steps between cells keep the clearance

@@ -32,7 +32,7 @@ from scanplan.plan.plan_wall import (
     list_faces,
     usual_thickness_m,
 )
-from scanplan.plan.rooms import room_bounds
+from scanplan.plan.rooms import partings, room_bounds
 from scanplan.plan.rooms.room import Room, RoomSettings
 from scanplan.plan.rooms.room_outlines import find_rooms
 from scanplan.plan.uncertainty import ReviewCriteria
@@ -508,16 +508,15 @@ class _Survey:
         )
         floor = free_space.difference_on_grid(floor, outside)
         hidden = free_space.difference_on_grid(floor, self.seen_floor)
-        partings = room_bounds.find_partings(
+        parted = partings.find_partings(
             bounds,
-            room_bounds.Floor(floor, planar=self.rays.planar, hidden=hidden),
+            partings.Floor(floor, planar=self.rays.planar, hidden=hidden),
             self.track_m,
-            self.settings.openings,
-            min_area_m2=self.settings.rooms.min_area_m2,
+            2 * self.settings.openings.max_door_m,
             ways_m=surfaces.ways_m,
         )
         rooms = find_rooms(
-            wall_ground.Bounds([*bounds.walls, *partings], bounds.unpaired_m),
+            wall_ground.Bounds([*bounds.walls, *parted], bounds.unpaired_m),
             self.views,
             self.track_m,
             self.settings.rooms,
@@ -543,7 +542,7 @@ class _Survey:
             furniture_height_m=self.settings.furniture.furniture_height_m,
             max_width_m=self.settings.pairs.max_thickness_m,
         )
-        return _Spaces(rooms=rooms, partings=partings, pieces=pieces)
+        return _Spaces(rooms=rooms, partings=parted, pieces=pieces)
 
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
         """Return the spans of rooms' outlines where nothing is drawn."""

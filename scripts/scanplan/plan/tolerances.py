@@ -10,3 +10,4 @@ ENOUGH_RAYS = 10  # fewer say nothing of a height, a direction or a way
 LEAST_SCANS = 2  # one alone may meet a wall at one height, or have something too near to measure
 LOW_PERCENT = 2  # of heights: lower ones may be stray, as may be so many at the top
 ALONG_SHARE = 0.7  # of a width: what is there all along, though other things hide the rest
+FURNITURE_M2 = 3.0  # that furniture stands on, or parts off between it and a wall, at most

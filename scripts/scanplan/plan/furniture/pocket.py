@@ -7,11 +7,10 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.geometry.parted_ground import FURNITURE_M2
 from scanplan.geometry.polygons import rectangle_sides_m
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.recesses import POCKET_M2
-from scanplan.plan.tolerances import CORNER_M
+from scanplan.plan.tolerances import CORNER_M, FURNITURE_M2
 from scanplan.rays.face_raster import CELL_M
 
 

@@ -8,10 +8,9 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
-from scanplan.geometry.parted_ground import FURNITURE_M2
 from scanplan.plan.faces.intervals import FaceInterval
 from scanplan.plan.furniture.plan_faces import PlanFaces
-from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M
+from scanplan.plan.tolerances import ALONG_SHARE, CORNER_M, END_M, FURNITURE_M2
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 
