@@ -263,7 +263,7 @@ def test_a_plan_is_placed_once_for_all_rules_and_its_own_tables_are_scored(tmp_p
 
     monkeypatch.setattr(ablation_scores.scoring, "place_floor", place)
     monkeypatch.setattr(ablation_scores.score_files, "score_results", score)
-    ablation_scores._place.cache_clear()
+    ablation_scores.place.cache_clear()
     for rule in ("one", "other"):
         found = ablation_scores.score(tmp_path / rule / "plan", drive, {})
         assert set(found) == set(ablation_scores.HEADLINES) - {"column_recall", "leaves_as_wall"}
