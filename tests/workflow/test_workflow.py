@@ -120,7 +120,10 @@ def test_a_touched_file_reruns_nothing(project):
         ("selection: {stop: {n_scans: 3}}", CHOSEN),
         ("plan: {export: {formats: [ifc, laz]}}", {"export_cloud", "export_files"}),
         ("plan: {export: {formats: []}}", set()),
-        ("plan: {export: {author: A. Surveyor}}", {"export_files"}),
+        (
+            "plan: {export: {author: A. Surveyor}}",
+            {"export_files", "export_plan", "export_presentation"},
+        ),
         ("evaluation: {bitmap_cell_m: 0.1}", EVALUATED | {"evaluate_plan"}),
         (
             "advanced: {selection: {wall_length: {cell_m: 0.5}}}",
