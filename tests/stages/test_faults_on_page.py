@@ -117,6 +117,52 @@ def test_what_ends_a_run_is_named_by_its_words_taken_back_and_made_again(served)
     assert text_of(page, "#told") == "" and page.run("edits.fresh().length") == 0
 
 
+LATE = """(() => {
+  const ask = window.fetch;
+  const held = new Promise((go) => { window.late = go; });
+  window.fetch = async (...asked) => {
+    if (asked[0] !== "api/state") return ask(...asked);
+    const answer = await ask(...asked);
+    window.isHeld = true;
+    await held;
+    return answer;
+  };
+})()"""
+"""What the server says of its state arrives when `late` is called."""
+
+
+def test_what_the_server_said_before_a_save_is_not_news_after_it(served):
+    page, _ = served
+    page.run(LATE)
+    page.run("dispatchEvent(new Event('focus'))")
+    settle(page, "window.isHeld")
+    say(page, GONE, FAR)
+    save(page)
+    settle(page, "document.getElementById('told').classList.contains('flag')")
+    page.run("late()")
+    page.run("new Promise((wait) => setTimeout(wait, 50))")
+    press(page, "×", "#corrections li.fault")
+    page.run("dispatchEvent(new Event('focus'))")
+    page.run("new Promise((wait) => setTimeout(wait, 500))")
+    assert entries(page) == [GONE]
+
+
+def test_nothing_moves_where_a_window_is_come_back_to_after_a_failed_run(served):
+    page, _ = served
+    say(page, FAR)
+    save(page)
+    settle(page, "document.querySelector('#corrections li.fault') !== null")
+    page.run("""(() => {
+      window.moved = [];
+      const see = new ResizeObserver(() => window.moved.push(1));
+      see.observe(document.querySelector("#corrections"));
+    })()""")
+    page.run("new Promise((wait) => setTimeout(wait, 100))")
+    page.run("dispatchEvent(new Event('focus'))")
+    page.run("new Promise((wait) => setTimeout(wait, 500))")
+    assert page.run("window.moved.length") == 1
+
+
 def test_a_failed_run_is_told_again_to_a_page_that_was_closed(served):
     page, _ = served
     say(page, FAR)

@@ -16,6 +16,7 @@
     },
     revision: "",
     isBroken: false, // what is saved was not carried out
+    watch: undefined, // who follows a run: what was asked for an earlier one is of before
   };
 
   function list() {
@@ -112,9 +113,11 @@
 
   // --- with a server ---
   async function connect() {
-    if (location.protocol !== "http:" || !byId("run-progress").hidden) return;
+    if (location.protocol !== "http:" || server.watch) return;
+    const known = server.revision;
     try {
       const state = await server.ask("state");
+      if (server.revision !== known) return; // saved meanwhile: this is of before
       // reports of other storeys lie beside what is served
       byId("storeys")?.toggleAttribute("hidden", true);
       if (state.status !== 200) return tell(state.error, true);
@@ -157,19 +160,22 @@
     edits.begin();
   }
   async function watch() {
+    const mine = (server.watch = {});
     const bar = byId("run-progress");
-    bar.hidden = byId("run-stop").hidden = false;
-    byId("run-go").hidden = true;
     for (;;) {
       const run = await server.ask("run").catch(() => ({ error: "The server does not answer; reload later." }));
+      if (server.watch !== mine) return;
+      const isOver = Boolean(run.error || !run.running);
       const left = run.running && run.left_s >= 1 ? `, about ${Math.round(run.left_s)} s left` : "";
       server.isBroken = Boolean(run.error || run.stopped);
       if (run.error) fail(run.error, run.entries ?? []);
       else tell(`${run.line}${left}`);
+      // nothing moves under a pointer where nothing runs
+      bar.hidden = byId("run-stop").hidden = isOver;
+      byId("run-go").hidden = !(isOver && run.stopped);
       if (run.total) { bar.max = run.total; bar.value = run.ended; }
-      if (run.error || !run.running) {
-        bar.hidden = byId("run-stop").hidden = true;
-        byId("run-go").hidden = !run.stopped;
+      if (isOver) {
+        server.watch = undefined;
         byId("save").disabled = false;
         if (!run.error && !run.stopped) location.reload();
         return;
