@@ -10,7 +10,7 @@ import hashlib
 import json
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -81,6 +81,34 @@ def find_floor(results: Path) -> Floor:
     recorded = ablation_scores.find_truth(results)
     is_real = recorded is not None and recorded.true_poses is None
     return Floor(name, "", "", "real" if is_real else "")
+
+
+def choose_floors(
+    folder: Path, names: Sequence[str], may_be: Callable[[Floor], bool], task: str
+) -> dict[Path, Floor]:
+    """Return the finished floors that a fit is made on, by their results; exit where none is.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the realistic bench, with finished floors.
+    names : sequence of str
+        Floors, kinds or halves; the tuning half by default.
+    may_be : callable
+        Which floors the fit is of.
+    task : str
+        What asks.
+    """
+    results, wanted = folder / "code/results", list(names) or ["tuning"]
+    floors = {path: find_floor(path) for path in sorted(results.glob("*"))}
+    chosen = {
+        path: floor
+        for path, floor in floors.items()
+        if may_be(floor) and any(is_named(floor, word) for word in wanted)
+    }
+    if not chosen:
+        sys.exit(f"{task}: no such floor of {' '.join(wanted)} is finished in {results}")
+    return chosen
 
 
 def _is_wanted(floor: Floor, words: Iterable[str]) -> bool:

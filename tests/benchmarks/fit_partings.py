@@ -1,4 +1,4 @@
-"""The weights of what parts rooms, fitted on floors of the tuning half.
+"""The weights of what parts rooms, fitted on planar floors of the tuning half.
 
 Floor is cut into cells by all lines that may part it. Cells of one true room are joined, in an
 order by chance, and at each step it is noted of some pairs of regions what is weighed of them, and
@@ -7,19 +7,18 @@ holds; without a kind of building at a time it is said how far the weights swing
 """
 
 import random
-import sys
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import ablation
 import ablation_scores
 import numpy as np
 import shapely
 from ablation_switches import Function, Rule
-from realistic.floors import is_named
+from catalogue import survey_settings
+from realistic.floors import Floor
 from sklearn.linear_model import LogisticRegression
 
 from scanplan.geometry import overlays
@@ -50,50 +49,46 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
 
     Parameters
     ----------
-    folder : Path
-        Of the realistic bench, with finished floors.
-    names : sequence of str
-        Floors, kinds or halves; the tuning half by default.
+    folder, names
+        See `ablation.choose_floors`.
     settings : dict
         Default settings.
     """
-    results = folder / "code/results"
-    wanted = list(names) or ["tuning"]
-    floors = {path: ablation.find_floor(path) for path in sorted(results.glob("*"))}
-    chosen = [
-        path for path, floor in floors.items() if any(is_named(floor, word) for word in wanted)
-    ]
-    if not chosen:
-        sys.exit(f"fit_partings: no floor of {' '.join(wanted)} is finished in {results}")
+    chosen = ablation.choose_floors(folder, names, _is_planar, "fit_partings")
     with workers.open_pool(min(_PROCESSES, len(chosen))) as run:
         found = list(run(observe, [(path, settings) for path in chosen]))
     terms, is_apart = _stack(found)
     weights = fit(terms, is_apart)
     print(f"WEIGHTS = {tuple(weights[:-2].round(2).tolist())}")
     print(f"AREA, UNVISITED = {tuple(weights[-2:].round(2).tolist())}")
-    kinds = [floors[path].kind for path in chosen]
+    kinds = [floor.kind for floor in chosen.values()]
     for kind in sorted(set(kinds)):
         rest = [of for of, name in zip(found, kinds, strict=True) if name != kind]
         if rest:
             print(f"without {kind}: {fit(*_stack(rest)).round(2).tolist()}")
 
 
+def _is_planar(floor: Floor) -> bool:
+    """Return whether a floor was driven with a planar sensor, as all real ones were."""
+    return floor.drive is None or floor.sensor in survey_settings.PLANAR
+
+
 def observe(results: Path, settings: Settings) -> tuple[FloatArray, BoolArray]:
     """Return what is weighed (n, t) of pairs of regions of a floor, and which are two rooms."""
-    grounds: list[Any] = []
+    terms: list[FloatArray] = []
+    parts: list[tuple[GroundCells, BoolArray]] = []
 
-    def record(function: Function) -> Function:
-        def asked(cells: GroundCells, log_odds: FloatArray, is_visited: BoolArray) -> IntArray:
-            grounds.append((cells, is_visited))
-            return function(cells, log_odds, is_visited)
+    def record(_: Function) -> Function:
+        def asked(cells: GroundCells, _: FloatArray, is_visited: BoolArray) -> IntArray:
+            parts.append((cells, is_visited))
+            return np.zeros(len(cells.cells), np.int64)  # of what is recorded all is asked, later
 
         return asked
 
-    def record_terms(function: Function) -> Function:
+    def record_terms(_: Function) -> Function:
         def asked(measures: parting_odds.LineMeasures) -> FloatArray:
-            odds = function(measures)
-            grounds.append(measures.list_terms()[odds > parting_odds.LEAST_ODDS])
-            return odds
+            terms.append(measures.list_terms())
+            return np.zeros(len(terms[-1]))  # what is unlikely by the weights of today teaches, too
 
         return asked
 
@@ -109,7 +104,7 @@ def observe(results: Path, settings: Settings) -> tuple[FloatArray, BoolArray]:
     placed = ablation_scores.place(results)
     back = np.linalg.inv(placed.motion)
     rooms = shapely.transform(placed.scene.rooms, lambda xy: xy @ back[:2, :2].T + back[:2, 3])
-    return note_floor(grounds[::2], grounds[1::2], rooms, random.Random(results.name))
+    return note_floor(terms, parts, rooms, random.Random(results.name))
 
 
 def note_floor(

@@ -6,7 +6,6 @@ is. Shares of each range of each feature are counted, rounded, and printed as th
 worth on others.
 """
 
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +15,6 @@ import ablation
 import ablation_scores
 import numpy as np
 from ablation_switches import Function, Rule
-from realistic.floors import is_named
 
 from scanplan.lab.evaluation import face_cells
 from scanplan.lab.evaluation.scores import false_walls, score_files
@@ -61,29 +59,20 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
 
     Parameters
     ----------
-    folder : Path
-        Of the realistic bench, with finished floors.
-    names : sequence of str
-        Floors, kinds or halves; the tuning half by default.
+    folder, names
+        See `ablation.choose_floors`.
     settings : dict
         Default settings.
     """
-    results = folder / "code/results"
-    wanted = list(names) or ["tuning"]
-    floors = {path: ablation.find_floor(path) for path in sorted(results.glob("*"))}
-    chosen = [
-        path
-        for path, floor in floors.items()
-        if floor.drive is not None and any(is_named(floor, word) for word in wanted)
-    ]
-    if not chosen:
-        sys.exit(f"fit_things: no simulated floor of {' '.join(wanted)} is finished in {results}")
+    chosen = ablation.choose_floors(
+        folder, names, lambda floor: floor.drive is not None, "fit_things"
+    )
     with workers.open_pool(min(_PROCESSES, len(chosen))) as run:
         found: list[Surfaces] = list(run(observe, [(path, settings) for path in chosen]))
     everything = _join(found)
     print(format_table(count_shares(everything), fit(everything)))
     print(f"CORNERS = {fit_corners(everything.corners).round(2).tolist()}")
-    kinds = [floors[path].kind for path in chosen]
+    kinds = [floor.kind for floor in chosen.values()]
     left_out: list[tuple[Surfaces, FloatArray, FloatArray]] = []
     for kind in sorted(set(kinds)):
         rest = _join([of for of, name in zip(found, kinds, strict=True) if name != kind])

@@ -22,7 +22,7 @@ def wall(x0, y0, x1, y1):
 def find(floor, walls=(), track_m=ACROSS, *, planar=False, **known):
     return partings.find_partings(
         Bounds(walls, unpaired_m=0.1),
-        partings.Floor(floor, planar=planar, hidden=known.get("hidden")),
+        parting_lines.Floor(floor, planar=planar, hidden=known.get("hidden")),
         np.array(track_m, float),
         3.0,
         ways_m=known.get("ways_m", ()),

@@ -17,23 +17,17 @@ class Cells:
 
     Attributes
     ----------
-    n_columns : int
     flat : (k,) int64
-        Row times `n_columns` plus column.
+        Row times the grid's columns plus column.
     far : (k,) float64
         How far each is from what is no ground, in cells.
     near : (9, k) int32
         Number of the cells around each and of itself, row by row; `k` is none.
     """
 
-    n_columns: int
     flat: IntArray
     far: FloatArray
     near: IntArray
-
-    def find(self, row: IntArray, column: IntArray) -> IntArray:
-        """Return the numbers of cells (n,), of those that are no ground `k`."""
-        return _find_flat(self.flat, row * self.n_columns + column)
 
     def beside(self, down: int, along: int) -> IntArray:
         """Return the number (k,) of the cell a step from each, down and along of -1 to 1."""
@@ -47,7 +41,7 @@ def list_cells(inside: BoolArray) -> Cells:
     near = np.empty((len(_AROUND), len(flat)), np.int32)
     for place, (down, along) in enumerate(_AROUND):
         near[place] = _find_flat(flat, flat + down * n_columns + along)
-    return Cells(n_columns, flat, distances_of_inner(inside), near)
+    return Cells(flat, distances_of_inner(inside), near)
 
 
 def _find_flat(flat: IntArray, wanted: IntArray) -> IntArray:

@@ -33,6 +33,7 @@ from scanplan.plan.plan_wall import (
     usual_thickness_m,
 )
 from scanplan.plan.rooms import partings, room_bounds
+from scanplan.plan.rooms.parting_lines import Floor
 from scanplan.plan.rooms.room import Room, RoomSettings
 from scanplan.plan.rooms.room_outlines import find_rooms
 from scanplan.plan.uncertainty import ReviewCriteria
@@ -510,7 +511,7 @@ class _Survey:
         hidden = free_space.difference_on_grid(floor, self.seen_floor)
         parted = partings.find_partings(
             bounds,
-            partings.Floor(floor, planar=self.rays.planar, hidden=hidden),
+            Floor(floor, planar=self.rays.planar, hidden=hidden),
             self.track_m,
             2 * self.settings.openings.max_door_m,
             ways_m=surfaces.ways_m,

@@ -29,6 +29,8 @@ _NONE = -30.0
 """Log odds of less."""
 _RATIO = (0.3, 4.0)
 """Between which ground beside a line is so much wider or deeper: more says no more."""
+HIDDEN_SHARE = 0.5
+"""Of a line, that furniture hides: of more it is not known what is there."""
 _STUB_M = 0.25
 """A wall at a line's end is longer."""
 
@@ -62,7 +64,7 @@ class LineMeasures:
         deeper = np.log(np.clip(self.deep, *_RATIO))
         on = np.minimum(self.on_m / self.length_m[:, None], 1.5)
         is_on = self.on_m.min(axis=1, keepdims=True) > _STUB_M
-        is_hidden = self.hidden[:, None] > 0.5
+        is_hidden = self.hidden[:, None] > HIDDEN_SHARE
         one = np.ones((len(on), 1))
         length = np.log(self.length_m)[:, None]
         return np.concatenate(

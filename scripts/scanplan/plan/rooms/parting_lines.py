@@ -11,7 +11,7 @@ from scipy.spatial import KDTree
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry import overlays
+from scanplan.geometry import intersections, overlays
 from scanplan.geometry.outlines import Outline
 from scanplan.plan.model.parting_odds import LineMeasures
 from scanplan.plan.plan_wall import PlanWall
@@ -29,6 +29,34 @@ _AWAY = ((0.5, 0.4), (1.0, 0.6))
 # the wall that a door is in, and beyond what stands just beside a door
 _WIDER = 6.0  # is as good as any more
 _ALONG = math.sin(math.radians(8))  # of a wall in the line
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """Floor that rooms may be parted of.
+
+    Attributes
+    ----------
+    ground : shapely geometry
+        That was seen free, and what furniture stands on.
+    planar : bool
+        Whether all scans lie in one plane.
+    hidden : shapely geometry, optional
+        What of it furniture stands on: it was not seen.
+    """
+
+    ground: BaseGeometry
+    planar: bool = False
+    hidden: BaseGeometry | None = None
+
+    def rate_hidden(self, lines_m: FloatArray) -> FloatArray:
+        """Return what share of lines (n, 2, 2) over floor furniture hides, (n,)."""
+        if self.hidden is None:
+            return np.zeros(len(lines_m))
+        lines = shapely.linestrings(lines_m)
+        return 1 - shapely.length(overlays.subtract_lines(lines, self.hidden)) / shapely.length(
+            lines
+        )
 
 
 def find_lines(
@@ -104,10 +132,9 @@ def _leave_out_same(lines_m: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class WallLines:
-    """The lines of straight walls: their normals, a place on each, half thickness, and ends."""
+    """The lines of straight walls, half of their thickness, and their ends."""
 
-    normal: FloatArray
-    anchor_m: FloatArray
+    spans: intersections.SpanArrays
     half_m: FloatArray
     ends_m: FloatArray
 
@@ -117,16 +144,15 @@ class WallLines:
         straight = [wall for wall in walls if wall.bend is None]
         half_m = [wall.half_m or unpaired_m for wall in straight]
         return cls(
-            np.array([wall.line.normal for wall in straight]).reshape(-1, 2),
-            np.array([wall.line.at(0.0) for wall in straight]).reshape(-1, 2),
+            intersections.stack_spans(straight),
             np.array(half_m),
             np.array([wall.ends for wall in straight]).reshape(-1, 2, 2),
         )
 
     def measure_on_m(self, end_m: FloatArray, way: FloatArray) -> float:
         """Return how long a wall is that goes on from the end of a line along its way (2,)."""
-        is_along = np.abs(self.normal @ way) <= _ALONG
-        off_m = np.abs(((end_m - self.anchor_m) * self.normal).sum(axis=1))
+        is_along = np.abs(self.spans.normal @ way) <= _ALONG
+        off_m = np.abs(((end_m - self.spans.centre) * self.spans.normal).sum(axis=1))
         along_m = np.sort((self.ends_m - end_m) @ way, axis=1)
         is_on = is_along & (off_m <= self.half_m + END_M) & (along_m[:, 0] <= CORNER_M + END_M)
         on_m = along_m[:, 1] - np.maximum(along_m[:, 0], 0.0)
@@ -134,9 +160,9 @@ class WallLines:
 
 
 def measure_lines(
-    ground: Polygon, lines_m: FloatArray, walls: WallLines, hidden: BaseGeometry | None
+    ground: Polygon, lines_m: FloatArray, walls: WallLines, floor: Floor
 ) -> LineMeasures:
-    """Measure lines (n, 2, 2) across ground, of which furniture hides some."""
+    """Measure lines (n, 2, 2) across a piece of floor."""
     outline = Outline(ground)
     shapely.prepare(ground)
     span_m = lines_m[:, 1] - lines_m[:, 0]
@@ -159,12 +185,10 @@ def measure_lines(
             deep[row, column] = min(max(widths_m), depth_m) / length
             end_m = lines_m[row, column]
             on_m[row, column] = walls.measure_on_m(end_m, along if column else -along)
-    seen = shapely.linestrings(lines_m)
-    seen_m = length_m if hidden is None else shapely.length(overlays.subtract_lines(seen, hidden))
     return LineMeasures(
         length_m=length_m,
         beside=np.sort(beside, axis=1),
         deep=np.sort(deep, axis=1),
         on_m=np.sort(on_m, axis=1),
-        hidden=1 - seen_m / length_m,
+        hidden=floor.rate_hidden(lines_m),
     )

@@ -3,7 +3,6 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -15,43 +14,18 @@ from scanplan.geometry.ground_cells import part_ground
 from scanplan.geometry.lines import Line
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan import wall_ground
-from scanplan.plan.model.parting_odds import LEAST_ODDS, weigh_lines
+from scanplan.plan.model.parting_odds import HIDDEN_SHARE, LEAST_ODDS, weigh_lines
 from scanplan.plan.model.room_partition import join_cells
 from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import parting_lines
+from scanplan.plan.rooms.parting_lines import Floor
 from scanplan.plan.tolerances import CORNER_M, END_M, FURNITURE_M2
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 _BEYOND_M = 1.2 * END_M  # lines end at outlines that err by less
-
-
-@dataclass(frozen=True, eq=False)
-class Floor:
-    """Floor that rooms may be parted of.
-
-    Attributes
-    ----------
-    ground : shapely geometry
-        That was seen free, and what furniture stands on.
-    planar : bool
-        Whether all scans lie in one plane.
-    hidden : shapely geometry, optional
-        What of it furniture stands on: it was not seen.
-    """
-
-    ground: BaseGeometry
-    planar: bool = False
-    hidden: BaseGeometry | None = None
-
-    def measure_seen_m(self, line_m: FloatArray) -> float:
-        """Return how much of a line (2, 2) over floor furniture does not hide."""
-        across = LineString(line_m)
-        if self.hidden is None:
-            return across.length
-        return overlays.subtract_lines(across, self.hidden).length
 
 
 def find_partings(
@@ -84,20 +58,20 @@ def find_partings(
     grounds = _list_grounds(bounds, doors, floor, longest_leg_m)
     lines = parting_lines.find_lines(grounds, bounds.walls, bounds.unpaired_m)
     on = parting_lines.WallLines.of_walls(bounds.walls, bounds.unpaired_m)
-    partings = list(doors)
+    partings, places = list(doors), shapely.points(track_m)
     for ground, lines_m in zip(grounds, lines, strict=True):
-        measures = parting_lines.measure_lines(ground, lines_m, on, floor.hidden)
+        measures = parting_lines.measure_lines(ground, lines_m, on, floor)
         odds = weigh_lines(measures)
         is_likely = odds > LEAST_ODDS
         lines_m, odds = lines_m[is_likely], odds[is_likely]
         cells = part_ground(ground, lines_m, _BEYOND_M)
-        visited = shapely.STRtree(cells.cells).query(shapely.points(track_m), "intersects")[1]
+        visited = shapely.STRtree(cells.cells).query(places, "intersects")[1]
         is_visited = np.isin(np.arange(len(cells.cells)), visited)
         room = join_cells(cells, odds, is_visited)
         for row, first, last in cells.find_spans(room):
             ends_m = lines_m[row, 0] + np.outer([first, last], lines_m[row, 1] - lines_m[row, 0])
-            is_hidden = 2 * floor.measure_seen_m(ends_m) < math.hypot(*(ends_m[1] - ends_m[0]))
-            kind = wall_ground.UNSEEN if is_hidden else GAP
+            is_hidden = floor.rate_hidden(ends_m[None]) > HIDDEN_SHARE
+            kind = wall_ground.UNSEEN if is_hidden.all() else GAP
             partings.append(_make_parting(_snap(ends_m, bounds.walls), kind))
     return partings
 
