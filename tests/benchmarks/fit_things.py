@@ -1,13 +1,13 @@
 """The densities of what surfaces are sides of, fitted on floors of the tuning half.
 
 Surfaces of plans by labels are looked up in the truths of their drives: what most of their length
-is. Shares of each range of each feature are counted, rounded, and printed as the table that
-`plan/model/things.py` holds; by leaving out a kind of building at a time it is said what they are
-worth on others.
+is. Shares of each range of each feature are counted, rounded, and printed as the tables that
+`plan/model/thing_densities.py` holds; by leaving out a kind of building at a time it is said what
+they are worth on others.
 """
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,9 +18,10 @@ from ablation_switches import Function, Rule
 
 from scanplan.lab.evaluation import face_cells
 from scanplan.lab.evaluation.scores import false_walls, score_files
-from scanplan.plan.model import things
+from scanplan.plan.model import thing_densities, things
 from scanplan.plan.model.roofs import Roof
 from scanplan.plan.model.surface_features import Features, Surroundings
+from scanplan.plan.model.thing_densities import Density, Population
 from scanplan.rays.ray_set import RaySet
 from scanplan.stage import workers
 from scanplan.types import FloatArray, IntArray, Settings
@@ -43,7 +44,7 @@ _LEAST_SHARE = 0.005  # what never was may be
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """Surfaces of some drives: features (n, f) in the order of `things.DENSITIES`, and kinds.
+    """Surfaces of some drives: features (n, f) in the order of `things.FEATURES`, and kinds.
 
     And how often kinds (k, k) meet at outer corners.
     """
@@ -55,7 +56,7 @@ class Surfaces:
 
 
 def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
-    """Print the table, and what it is worth.
+    """Print the tables, and what they are worth.
 
     Parameters
     ----------
@@ -69,17 +70,27 @@ def bench(folder: Path, names: Sequence[str], settings: Settings) -> None:
     )
     with workers.open_pool(min(_PROCESSES, len(chosen))) as run:
         found: list[Surfaces] = list(run(observe, [(path, settings) for path in chosen]))
-    everything = _join(found)
-    print(format_table(count_shares(everything), fit(everything)))
-    print(f"CORNERS = {fit_corners(everything.corners).round(2).tolist()}")
     kinds = [floor.kind for floor in chosen.values()]
-    left_out: list[tuple[Surfaces, FloatArray, FloatArray]] = []
-    for kind in sorted(set(kinds)):
-        rest = _join([of for of, name in zip(found, kinds, strict=True) if name != kind])
-        own = _join([of for of, name in zip(found, kinds, strict=True) if name == kind])
-        likely = things.weigh_features(own.features, fit(rest).values())
-        left_out.append((own, likely, count_shares(rest)))
-    print(_report(left_out))
+    for name in ("IN_SPACE", "IN_PLANE"):
+        population = getattr(thing_densities, name)
+        own = [
+            (of, kind)
+            for of, kind in zip(found, kinds, strict=True)
+            if things.choose_population(of.features) is population
+        ]
+        if own:
+            print(f"{name} = {format_population(fit(_join([of for of, _ in own]), population))}")
+            print(_report(list(_leave_out(own, population))))
+    print(f"CORNERS = {fit_corners(_join(found).corners).round(2).tolist()}")
+
+
+def _leave_out(
+    own: Sequence[tuple[Surfaces, str]], population: Population
+) -> Iterator[tuple[Surfaces, Population]]:
+    """Yield the surfaces of each kind of building, and what those of all others teach."""
+    for kind in sorted({kind for _, kind in own}):
+        rest = _join([of for of, other in own if other != kind])
+        yield _join([of for of, other in own if other == kind]), fit(rest, population)
 
 
 def observe(results: Path, settings: Settings) -> Surfaces:
@@ -119,9 +130,8 @@ def observe(results: Path, settings: Settings) -> Surfaces:
     met = met[(met >= 0).all(axis=1)]
     corners = np.zeros((len(things.KINDS), len(things.KINDS)), np.int64)
     np.add.at(corners, (met, met[:, ::-1]), 1)
-    rows = [[getattr(features[row], name) for name in things.DENSITIES] for row in taught]
     return Surfaces(
-        features=np.array(rows, float).reshape(len(taught), len(things.DENSITIES)),
+        features=things.list_values([features[row] for row in taught]),
         kind=kind[taught],
         length_m=np.array([parts[row].length_m for row in taught]),
         corners=corners,
@@ -129,23 +139,25 @@ def observe(results: Path, settings: Settings) -> Surfaces:
 
 
 def count_shares(of: Surfaces) -> FloatArray:
-    """Return the share (k,) of each kind of all surfaces."""
-    return np.bincount(of.kind, minlength=len(things.KINDS)) / len(of.kind)
+    """Return the share (k,) of each kind of all surfaces, and of one more of each."""
+    count = np.bincount(of.kind, minlength=len(things.KINDS)) + 1
+    return count / count.sum()
 
 
-def fit(of: Surfaces) -> dict[str, FloatArray]:
-    """Return the shares (k, e + 1) of the ranges of each feature, of each kind."""
-    shares: dict[str, FloatArray] = {}
-    for column, (name, density) in enumerate(things.DENSITIES.items()):
-        value = of.features[:, column]
+def fit(of: Surfaces, population: Population) -> Population:
+    """Return a population of the same features and ranges with the shares of some surfaces."""
+    densities: dict[str, Density] = {}
+    for name, density in population.densities.items():
+        value = of.features[:, things.FEATURES.index(name)]
         known = ~np.isnan(value)
         place = np.searchsorted(density.edges, value[known], "right")
         count = np.zeros((len(things.KINDS), len(density.edges) + 1))
         np.add.at(count, (of.kind[known], place), 1.0)
         usual = (count.sum(axis=0) + 1) / (count.sum() + count.shape[1])
         count += _OF_ALL * usual
-        shares[name] = count / count.sum(axis=1, keepdims=True)
-    return shares
+        shares = count / count.sum(axis=1, keepdims=True)
+        densities[name] = Density(density.edges, tuple(map(tuple, shares.tolist())))
+    return Population(tuple(count_shares(of).tolist()), densities)
 
 
 def fit_corners(corners: IntArray) -> FloatArray:
@@ -155,34 +167,37 @@ def fit_corners(corners: IntArray) -> FloatArray:
     return (corners + _OF_ALL) / (by_chance + _OF_ALL)
 
 
-def format_table(shares: FloatArray, densities: Mapping[str, FloatArray]) -> str:
-    """Return shares and densities as the source text of `things`."""
-    lines = [f"SHARES = ({', '.join(f'{share:.2f}' for share in shares)})"]
-    for name, density in things.DENSITIES.items():
-        lines.append(f'    "{name}": Density(')
-        lines.append(f"        {density.edges},")
-        rounded = np.maximum(np.round(densities[name], 2), _LEAST_SHARE).tolist()
+def format_population(of: Population) -> str:
+    """Return shares and densities as the source text of `thing_densities`."""
+    lines = [
+        "Population(",
+        f"    shares=({', '.join(f'{share:.2f}' for share in of.shares)}),",
+        "    densities={",
+    ]
+    for name, density in of.densities.items():
+        rounded = np.maximum(np.round(density.shares, 2), _LEAST_SHARE).tolist()
         rows = [f"({', '.join(f'{share:.3g}' for share in of_kind)})" for of_kind in rounded]
-        lines.append(f"        ({', '.join(rows)}),\n    ),")
-    return "\n".join(lines)
+        lines.append(f'        "{name}": Density({density.edges}, ({", ".join(rows)})),')
+    return "\n".join([*lines, "    },", ")"])
 
 
-def _report(left_out: Sequence[tuple[Surfaces, FloatArray, FloatArray]]) -> str:
+def _report(left_out: Sequence[tuple[Surfaces, Population]]) -> str:
     """Return what the densities are worth on kinds of buildings that were left out.
 
     How improbable what is so is by how much of an answer counts, and how many metres of each kind
     are taken for what.
     """
     lines = ["minus log probability of what is so, mean, by temper:"]
+    likely = [things.weigh_features(own.features, of) for own, of in left_out]
     for temper in _TEMPERS:
         missed = [
-            -things.weigh_kinds(likely, shares, temper)[np.arange(len(own.kind)), own.kind]
-            for own, likely, shares in left_out
+            -things.weigh_kinds(of_own, of.shares, temper)[np.arange(len(own.kind)), own.kind]
+            for of_own, (own, of) in zip(likely, left_out, strict=True)
         ]
         lines.append(f"{temper:4.1f} {np.concatenate(missed).mean():.3f}")
     metres = np.zeros((len(things.KINDS), len(things.KINDS)))
-    for own, likely, shares in left_out:
-        taken = things.weigh_kinds(likely, shares, things.TEMPER).argmax(axis=1)
+    for of_own, (own, of) in zip(likely, left_out, strict=True):
+        taken = things.weigh_kinds(of_own, of.shares, things.TEMPER).argmax(axis=1)
         np.add.at(metres, (own.kind, taken), own.length_m)
     lines.append("metres of what (rows) taken for what, of kinds of buildings that were left out:")
     lines.append(" " * 10 + "".join(f"{name:>10s}" for name in things.KINDS))

@@ -70,11 +70,13 @@ def test_a_plan_of_arrays_is_that_of_the_workflow(made, tmp_path):
         assert len(columns["x0_m" if table != "rooms" else "x_m"]) > 0
         for name, values in columns.items():
             found = getattr(plan, table)[name]
-            if values.dtype.kind == "f":
-                # the trajectory's file rounds poses
+            if name.startswith("sigma_end"):
+                # the trajectory's file rounds poses: one return more at an end
+                assert found == pytest.approx(values, abs=0.03), name
+            elif values.dtype.kind == "f":
                 assert found == pytest.approx(values, abs=2e-3, nan_ok=True), name
             elif name in ("n_points", "n_rays"):
-                # which moves one over the edge of a band
+                # likewise, over the edge of a band
                 assert found == pytest.approx(values, abs=2), name
             elif name != "geometry":
                 assert found.tolist() == values.tolist(), name

@@ -11,15 +11,16 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 import fit_things
 
 from scanplan.plan.model import things
+from scanplan.plan.model.thing_densities import IN_SPACE
 
 NAN = float("nan")
 
 
 def surfaces(kinds, **values):
     """Return surfaces of which nothing is known but the features that are named."""
-    features = np.full((len(kinds), len(things.DENSITIES)), NAN)
+    features = np.full((len(kinds), len(things.FEATURES)), NAN)
     for name, of_each in values.items():
-        features[:, list(things.DENSITIES).index(name)] = of_each
+        features[:, things.FEATURES.index(name)] = of_each
     corners = np.zeros((len(things.KINDS),) * 2, np.int64)
     return fit_things.Surfaces(features, np.array(kinds), np.ones(len(kinds)), corners)
 
@@ -27,8 +28,12 @@ def surfaces(kinds, **values):
 LEARNT = surfaces([things.WALL] * 6 + [things.LEAF] * 2, n_inner=[2, 2, 2, 2, 1, 0, 0, 0])
 
 
-def test_kinds_have_their_shares():
-    assert fit_things.count_shares(LEARNT).tolist() == [0.75, 0.25, 0, 0]
+def fit(learnt=LEARNT):
+    return fit_things.fit(learnt, IN_SPACE)
+
+
+def test_kinds_have_their_shares_and_one_more_each():
+    np.testing.assert_allclose(fit_things.count_shares(LEARNT), np.array([7, 3, 1, 1]) / 12)
 
 
 def test_ranges_have_the_shares_that_were_counted_and_a_little_of_all():
@@ -37,7 +42,7 @@ def test_ranges_have_the_shares_that_were_counted_and_a_little_of_all():
     Each kind has two of all besides its own: a wall one, one and four of six.
     """
     usual = np.array([4, 2, 5]) / 11
-    found = fit_things.fit(LEARNT)["n_inner"]
+    found = np.array(fit().densities["n_inner"].shares)
     np.testing.assert_allclose(found[things.WALL], (np.array([1, 1, 4]) + 2 * usual) / 8)
     np.testing.assert_allclose(found[things.LEAF], (np.array([2, 0, 0]) + 2 * usual) / 4)
     np.testing.assert_allclose(found[things.OUTSIDE], usual)
@@ -57,13 +62,13 @@ def test_kinds_that_meet_more_often_than_by_chance_attract_each_other():
 
 
 def test_what_was_never_seen_leaves_all_ranges_alike():
-    np.testing.assert_allclose(fit_things.fit(LEARNT)["overlooked"], 1 / 3)
+    np.testing.assert_allclose(fit().densities["overlooked"].shares, 1 / 3)
 
 
 def test_surfaces_are_what_they_are_likeliest_to_be():
     """With no corner a leaf is likelier three times: enough for as many, not for a seventh."""
     asked = surfaces([things.WALL] * 3, n_inner=[2, 0, NAN])
-    likely = things.weigh_features(asked.features, fit_things.fit(LEARNT).values())
+    likely = things.weigh_features(asked.features, fit())
     shares = np.array([0.7, 0.1, 0.1, 0.1])
     assert things.weigh_kinds(likely, shares, 1.0).argmax(axis=1).tolist() == [things.WALL] * 3
     alike = things.weigh_kinds(likely, np.full(4, 0.25), 1.0)
@@ -74,19 +79,20 @@ def test_surfaces_are_what_they_are_likeliest_to_be():
 def test_where_no_answer_counts_shares_are_all_that_is_known():
     shares = np.array([0.7, 0.1, 0.1, 0.1])
     asked = surfaces([0], n_inner=[0])
-    likely = things.weigh_features(asked.features, fit_things.fit(LEARNT).values())
+    likely = things.weigh_features(asked.features, fit())
     np.testing.assert_allclose(np.exp(things.weigh_kinds(likely, shares, 0.0)), [shares])
 
 
 def test_the_table_reads_as_that_of_the_package():
     """What was fitted is set in by hand: it is Python, and has a share for all ranges."""
-    text = fit_things.format_table(fit_things.count_shares(LEARNT), fit_things.fit(LEARNT))
-    first, rest = text.split("\n", 1)
-    assert ast.literal_eval(first.removeprefix("SHARES = ")) == (0.75, 0.25, 0, 0)
+    text = fit_things.format_population(fit())
+    head, rest = text.split("densities=")
+    shares = ast.literal_eval(head.split("shares=")[1].strip().rstrip(","))
+    np.testing.assert_allclose(shares, np.array([7, 3, 1, 1]) / 12, atol=0.005)
     # what is called in the text is a pair to read
-    read = ast.literal_eval("{" + rest.replace("Density(", "(") + "}")
-    assert list(read) == list(things.DENSITIES)
-    for name, (edges, shares) in read.items():
-        assert edges == things.DENSITIES[name].edges
-        assert np.shape(shares) == (len(things.KINDS), len(edges) + 1)
-        assert np.min(shares) >= 0.005
+    read = ast.literal_eval(rest.removesuffix(",\n)").replace("Density(", "("))
+    assert list(read) == list(IN_SPACE.densities)
+    for name, (edges, of_kinds) in read.items():
+        assert edges == IN_SPACE.densities[name].edges
+        assert np.shape(of_kinds) == (len(things.KINDS), len(edges) + 1)
+        assert np.min(of_kinds) >= 0.005

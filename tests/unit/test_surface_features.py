@@ -6,20 +6,23 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 
 from helpers.observation_making import line_through, observation
 from helpers.plan_wall_making import box, wall
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.model import islands
 from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, N_ENDS, SurfaceCounts
 from scanplan.plan.model.surface_features import Surroundings
 
 NAN = float("nan")
+NO_FLOOR = shapely.Polygon()
 NOTHING = SurfaceCounts(0.0, np.zeros((20, 20, 2, N_ENDS)))
 
 
-def look(walls, number=0, counts=NOTHING):
+def look(walls, number=0, counts=NOTHING, floor=NO_FLOOR):
     unknown = np.full(len(walls), NAN)
-    return Surroundings(walls).observe([counts] * len(walls), unknown, unknown)[number]
+    return Surroundings(walls, floor).observe([counts] * len(walls), unknown, unknown)[number]
 
 
 def with_face(made):
@@ -35,7 +38,8 @@ def with_door(made, low_m, high_m, kind="door"):
     return replace(opened, openings=[replace(o, kind=kind) for o in opened.openings])
 
 
-class TestBlocks:
+class TestIslands:
+    HALL = shapely.box(-3, -3, 12, 8)
     RACK = ((0, 0), (0, 0.8), (5, 0.8), (5, 0), (0, 0))
 
     def sides(self, turn_rad=0.0):
@@ -48,19 +52,40 @@ class TestBlocks:
     @pytest.mark.parametrize("turn_rad", [0.0, 0.6])
     def test_a_rack_is_as_deep_as_it_is_whichever_way_it_stands(self, turn_rad):
         walls = [*self.sides(turn_rad), wall(-3, -3, 12, -3, NAN)]
-        for number in range(4):
-            assert look(walls, number).block_m == pytest.approx(0.8, abs=0.01)
-        assert math.isinf(look(walls, 4).block_m)
+        depth_m = islands.find_island_depths_m(walls, self.HALL)
+        assert depth_m[:4] == pytest.approx(0.8, abs=0.1) and math.isinf(depth_m[4])
+        assert Surroundings(walls, self.HALL)._is_free.tolist() == [True] * 4 + [False]
 
-    def test_what_is_seen_from_inside_or_joined_to_that_is_no_block(self):
-        assert math.isinf(look(box(0.8)).block_m)
-        beside = [wall(*side.ends.ravel() + 0.1, NAN) for side in self.sides()]
-        assert math.isinf(look([*beside, *box(8.0)]).block_m)
+    def test_where_no_floor_is_known_nothing_stands_free(self):
+        found = look(self.sides(), 1)
+        assert (found.free, found.back_m) == (0.0, pytest.approx(0.8))
+        assert math.isnan(found.free_back_m)
 
-    def test_a_wall_between_deep_doors_is_no_block(self):
-        """Of it the front and two reveals are seen."""
-        assert math.isinf(look(self.sides()[:3]).block_m)
+    def test_what_stands_free_has_a_back_of_its_own_kind(self):
+        found = look(self.sides(), 1, floor=self.HALL)
+        assert (found.free, found.free_back_m) == (1.0, pytest.approx(0.8))
+        assert math.isnan(found.back_m)
 
+    def test_a_screen_whose_both_sides_see_the_same_floor_stands_free(self):
+        screen = wall(2, 0, 6, 0, 0.05)
+        assert islands.find_island_depths_m([screen], self.HALL)[0] == pytest.approx(0.1, abs=0.1)
+
+    @pytest.mark.parametrize("gap_m", [0.1, 0.6])
+    def test_a_rack_at_a_wall_holds_on_to_it(self, gap_m):
+        """Between the two nobody goes where it is narrower than 0.3 m."""
+        rack = wall(2, -3 + gap_m, 2, 0, 0.3)
+        is_held = np.isinf(islands.find_island_depths_m([rack], self.HALL)[0])
+        assert is_held == (gap_m < 0.3)
+
+    def test_a_core_that_one_can_go_around_is_a_part_of_the_building(self):
+        core = shapely.box(0, 0, 4, 3)
+        walls = [wall(0, 0, 4, 0, NAN), wall(0, 3, 4, 3, NAN)]
+        found = Surroundings(walls, self.HALL - core)
+        assert islands.find_island_depths_m(walls, found.floor) == pytest.approx(3.0, abs=0.2)
+        assert not found._is_free.any()
+
+
+class TestDepths:
     def test_a_cupboard_at_a_wall_is_as_deep_as_it_stands_before_that(self):
         """Seen are its front and, of one side, from corner to wall; the wall itself goes on."""
         front, side = wall(1, 0.6, 3, 0.6, NAN), wall(1, 0, 1, 0.6, NAN)
@@ -69,9 +94,6 @@ class TestBlocks:
         assert found == [pytest.approx(0.6), pytest.approx(0.6), math.inf]
         corners = Surroundings([front, side, *room]).corners
         assert corners.tolist() == [[0, 1]]
-
-    def test_a_wall_with_both_sides_is_no_block(self):
-        assert math.isinf(look([wall(0, 0, 4, 0, 0.4)]).block_m)
 
 
 class TestCorners:
@@ -270,6 +292,15 @@ def test_a_leaf_is_turned_from_the_directions_of_the_walls():
     turned = [look(walls, number).turned_deg for number in range(3)]
     assert turned[0] == pytest.approx(turned[1])
     assert turned[2] - turned[0] == pytest.approx(30, abs=5)
+
+
+def test_each_wing_has_directions_of_its_own():
+    """Another wing, longer, stands at 30 degrees to this one, 30 m away."""
+    wing = [wall(0, 0, 5, 0), wall(0, 0, 0, 5)]
+    c, s = 20 * math.cos(math.pi / 6), 20 * math.sin(math.pi / 6)
+    other = [wall(30, 0, 30 + c, s), wall(30, 0, 30 - s, c)]
+    assert look([*wing, *other]).turned_deg == pytest.approx(0, abs=2)
+    assert look([*wing[:1], *other]).turned_deg == pytest.approx(30, abs=2)
 
 
 def test_what_else_is_known_is_handed_on():

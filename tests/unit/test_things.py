@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from scanplan.plan.model import things
 from scanplan.plan.model.surface_features import Features
+from scanplan.plan.model.thing_densities import IN_PLANE, IN_SPACE
 from scanplan.plan.model.things import FURNITURE, LEAF, OUTSIDE, WALL, weigh_things
 
 NAN, INF = math.nan, math.inf
@@ -34,8 +35,9 @@ PARTITION = Features(
     joint_m=0.0,
     hinge_m=INF,
     before_m=INF,
+    free=0.0,
     back_m=INF,
-    block_m=INF,
+    free_back_m=NAN,
     depth_m=INF,
     turned_deg=0.2,
     through_glass=0.0,
@@ -76,8 +78,9 @@ RACK = replace(
     overlooked=NAN,
     n_inner=0,
     n_outer=2,
-    back_m=0.8,
-    block_m=0.8,
+    free=1.0,
+    back_m=NAN,
+    free_back_m=0.8,
 )
 FACADE_ACROSS = replace(
     PARTITION,
@@ -110,9 +113,9 @@ def test_each_is_what_it_is(found, kind):
 def test_what_is_not_known_of_it_says_nothing(found, kind):
     """As of planar scans, which do not see over anything."""
     unknown = weigh(replace(found, overlooked=NAN, top_m=NAN))
-    nothing = weigh(replace(found, **dict.fromkeys(things.DENSITIES, NAN)))
+    nothing = weigh(replace(found, **dict.fromkeys(things.FEATURES, NAN)))
     assert unknown.argmax() == kind
-    np.testing.assert_allclose(nothing, np.array(things.SHARES) / sum(things.SHARES))
+    np.testing.assert_allclose(nothing, np.array(IN_PLANE.shares) / sum(IN_PLANE.shares))
 
 
 def test_a_building_without_furniture_has_less_of_it():
@@ -136,7 +139,7 @@ def test_what_meets_at_an_outer_corner_is_of_one_thing(side):
     )
     is_furniture = side is CUPBOARD
     assert (met[FURNITURE] > alone[FURNITURE] + 0.1) == is_furniture
-    assert (met[FURNITURE] < alone[FURNITURE] - 0.1) == (not is_furniture)
+    assert (met[FURNITURE] < alone[FURNITURE] / 2) == (not is_furniture)
 
 
 @given(st.data())
@@ -169,8 +172,9 @@ def test_no_corner_changes_nothing():
         (PARTITION, WALL, {"roofed": 0.0}),
         (PARTITION, WALL, {"before_m": 0.6}),
         (PARTITION, WALL, {"joint_m": INF}),
-        (PARTITION, WALL, {"block_m": 0.8}),
-        (RACK, FURNITURE, {"block_m": INF}),
+        (PARTITION, WALL, {"free": 1.0}),
+        (RACK, FURNITURE, {"free": 0.0}),
+        (RACK, FURNITURE, {"free_back_m": INF}),
         (FRONT, FURNITURE, {"depth_m": INF}),
         (OPEN_LEAF, LEAF, {"hinge_m": 1.5}),
         (OPEN_LEAF, LEAF, {"length_m": 2.0}),
@@ -187,16 +191,22 @@ def test_what_speaks_against_a_kind_makes_it_less_of_one(found, kind, change):
     assert weigh(found)[kind] > weigh(replace(found, **change))[kind]
 
 
-def test_shares_of_every_kind_and_feature_are_shares():
-    assert sum(things.SHARES) == pytest.approx(1, abs=0.03)
-    assert set(things.DENSITIES) == {field.name for field in fields(Features)}
-    for density in things.DENSITIES.values():
+@pytest.mark.parametrize("population", [IN_SPACE, IN_PLANE])
+def test_shares_of_every_kind_and_feature_are_shares(population):
+    assert sum(population.shares) == pytest.approx(1, abs=0.03)
+    for density in population.densities.values():
         assert list(density.edges) == sorted(density.edges)
         assert len(density.shares) == len(things.KINDS)
         for of_kind in density.shares:
             assert len(of_kind) == len(density.edges) + 1
             assert min(of_kind) > 0
             assert sum(of_kind) == pytest.approx(1, abs=0.03)
+
+
+def test_every_feature_tells_in_space_and_no_height_does_in_a_plane():
+    assert set(IN_SPACE.densities) == set(things.FEATURES)
+    of_heights = {"top_m", "overlooked", "roofed"}
+    assert set(IN_PLANE.densities) <= set(things.FEATURES) - of_heights
 
 
 ANY = st.floats(0) | st.just(NAN)

@@ -399,7 +399,11 @@ class _Survey:
         unpaired_m = usual_thickness_m(walls)
         min_width_m = self.settings.openings.min_opening_m
         evidence = LabelEvidence(
-            self.rays, self.track_m, self.settings.openings.max_opening_m, self.designed
+            self.rays,
+            self.track_m,
+            self.settings.openings.max_opening_m,
+            self.designed,
+            self.seen_floor,
         )
         labelled = label_surfaces(walls, evidence, max_door_m=self.settings.openings.max_door_m)
         glass = find_fronts(labelled.walls, self.find_dense(), self.track_m)

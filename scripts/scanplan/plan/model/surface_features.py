@@ -3,15 +3,16 @@
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from shapely.geometry.base import BaseGeometry
 
-from scanplan.geometry.polygons import rectangle_sides_m
+from scanplan.plan.model import islands
 from scanplan.plan.model.surface_counts import BEYOND, DEEP, FACE, LOST, SurfaceCounts
 from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import PlanWall
@@ -22,7 +23,9 @@ from scanplan.types import Array, BoolArray, FloatArray, IntArray
 _DOOR_M = (0.5, 2.4)  # openings that leaves hang in, single and double ones
 _BEFORE_M = (0.25, 1.2)  # furniture stands so far before its wall
 _DEEP_M = 1.0  # furniture is no deeper
-_JOINED_M = 0.3  # surfaces no farther apart are of one thing, or one building
+_AROUND_M = 10.0  # wings of a building, and what a map bends, have directions of their own
+_WHOLE = 0.01  # those of the whole building count, where nothing else is around
+_FREE_M = 1.5  # deeper is no furniture, but a part of the building that one can go around
 _APART_M = 2.0  # farther off a surface stands alone
 _ACROSS = 0.9  # cosine of normals: flatter than that one surface goes on as the other
 _ALONG = 0.3  # of its length: what overlaps less is beside it, not behind
@@ -58,16 +61,17 @@ class Features:
         jamb, and from its length to the opening's width.
     before_m : float
         How far behind it another surface runs that faces the same way.
-    back_m : float
-        How far behind it another surface runs that faces the other way.
-    block_m : float
-        How deep the block is that it is a side of: the shorter side of the rectangle around all
-        that it is joined to, if most of that was seen from outside alone, the back with it.
+    free : float
+        1 of what stands in free floor, is no deeper than furniture and holds on to nothing beyond;
+        0 of all else.
+    back_m, free_back_m : float
+        How far behind it another surface runs that faces the other way: of what holds on to
+        something, and of what stands free. Either is NaN of the other.
     depth_m : float
         How deep what it meets at outer corners is, one after the other: the shorter side of the
         rectangle around that, along the longest of it.
     turned_deg : float
-        From the nearest main direction of the building, 0 to 45.
+        From the nearest main direction of what is around it, 0 to 45.
     through_glass : float
         Share of its rays that come through windows and panes.
     roofed : float
@@ -86,8 +90,9 @@ class Features:
     joint_m: float
     hinge_m: float
     before_m: float
+    free: float
     back_m: float
-    block_m: float
+    free_back_m: float
     depth_m: float
     turned_deg: float
     through_glass: float
@@ -101,9 +106,12 @@ class Surroundings:
     Attributes
     ----------
     walls : sequence of plan_wall.PlanWall
+    floor : shapely geometry
+        That was seen free; by default none is known, and nothing stands free.
     """
 
     walls: Sequence[PlanWall]
+    floor: BaseGeometry = field(default_factory=shapely.Polygon)
 
     def observe(
         self, counts: Sequence[SurfaceCounts], through_glass: FloatArray, roofed: FloatArray
@@ -134,8 +142,9 @@ class Surroundings:
                 joint_m=self._find_joint_m(number),
                 hinge_m=self._find_hinge_m(number),
                 before_m=self._find_before_m(number),
-                back_m=self._find_back_m(number),
-                block_m=float(self._block_m[number]),
+                free=float(self._is_free[number]),
+                back_m=math.nan if self._is_free[number] else self._find_back_m(number),
+                free_back_m=self._find_back_m(number) if self._is_free[number] else math.nan,
                 depth_m=float(self._depth_m[number]),
                 turned_deg=float(self._turned_deg[number]),
                 through_glass=float(through_glass[number]),
@@ -174,11 +183,14 @@ class Surroundings:
 
     @cached_property
     def _turned_deg(self) -> FloatArray:
-        """Return the angle (n,) of each wall to the directions that most of their length has."""
+        """The angle (n,) of each wall to the directions that most of the length around it has."""
         direction = np.array([wall.ends[1] - wall.ends[0] for wall in self.walls]).reshape(-1, 2)
         # the same of both and across
         turn = np.exp(4j * np.arctan2(direction[:, 1], direction[:, 0]))
-        main = (turn * np.hypot(*direction.T)).sum()
+        by_length = turn * np.hypot(*direction.T)
+        own, other = self._tree.query(self._lines, predicate="dwithin", distance=_AROUND_M)
+        main = np.full(len(turn), by_length.sum() * _WHOLE)
+        np.add.at(main, own[own != other], by_length[other[own != other]])
         return np.abs(np.degrees(np.angle(turn * np.conj(main)))) / 4
 
     @cached_property
@@ -201,27 +213,9 @@ class Surroundings:
         return depth_m
 
     @cached_property
-    def _block_m(self) -> FloatArray:
-        """How deep the block is that each surface (n,) is a side of, with what it is joined to."""
-        reach_m = [_JOINED_M + wall.half_m for wall in self.walls]
-        joined = self._tree.query(self._lines, predicate="dwithin", distance=reach_m)
-        ends_m = np.array([wall.ends for wall in self.walls]).reshape(-1, 2, 2)
-        normal = np.array([wall.line.normal for wall in self.walls]).reshape(-1, 2)
-        is_single = np.array([not wall.right for wall in self.walls], bool)
-        length_m = np.array([wall.length_m for wall in self.walls])
-        block_m = np.full(len(self.walls), math.inf)
-        for own in self._group(joined.T):
-            outline = shapely.MultiPoint(ends_m[own].reshape(-1, 2))
-            middle_m = shapely.get_coordinates(shapely.oriented_envelope(outline).centroid)
-            off_m = ((ends_m[own].mean(axis=1) - middle_m) * normal[own]).sum(axis=1)
-            is_outer = is_single[own] & (off_m > 0)
-            outer_m = length_m[own][is_outer]
-            if 2 * outer_m.sum() > length_m[own].sum():
-                longest = normal[own][is_outer][outer_m.argmax()]
-                # fronts and reveals of a wall between deep doors face no more than three ways
-                if (normal[own][is_outer] @ longest).min() < -_ACROSS:
-                    block_m[own] = rectangle_sides_m(outline)[0]
-        return block_m
+    def _is_free(self) -> BoolArray:
+        """Return which surfaces (n,) are of what stands free."""
+        return islands.find_island_depths_m(self.walls, self.floor) < _FREE_M
 
     def _group(self, pairs: IntArray) -> list[IntArray]:
         """Return the surfaces of each group that pairs (k, 2) hold together."""

@@ -57,7 +57,7 @@ def label_surfaces(
     walls = [part for wall, at in zip(walls, facades, strict=True) for part in part_wall(wall, at)]
     parts = [found for wall in walls for found in label_wall(wall, evidence)]
     roof = find_roof([part for part, _ in parts], evidence.rays)
-    surroundings = Surroundings([part for part, _ in parts])
+    surroundings = Surroundings([part for part, _ in parts], evidence.floor)
     found = observe_surfaces(surroundings, evidence.rays, roof)
     designed = _weigh_designed([part for part, _ in parts], evidence.designed)
     p = things.weigh_things(found, designed, surroundings.corners)

@@ -1,186 +1,25 @@
 """What a surface is a side of: a wall, the leaf of a door, furniture, or what is outside.
 
-Each kind has a density of each feature of a surface, as shares of ranges; features are taken for
+Each kind has a density of each feature of a surface (`thing_densities`); features are taken for
 independent of one another but for one exponent, and what is not known of a surface says nothing.
 Surfaces that meet at an outer corner are sides of one thing, nearly always. A further kind of thing
 is a further column.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from scanplan.plan.model.surface_features import Features
+from scanplan.plan.model.thing_densities import IN_PLANE, IN_SPACE, Population
 from scanplan.types import BoolArray, FloatArray, IntArray
 
 KINDS = ("wall", "leaf", "furniture", "outside")
 WALL, LEAF, FURNITURE, OUTSIDE = range(len(KINDS))
 """Columns of probabilities."""
-
-
-@dataclass(frozen=True)
-class Density:
-    """Shares of the ranges of a feature.
-
-    Attributes
-    ----------
-    edges : (e,) tuple of float
-        Between ranges, each of which holds its lower edge.
-    shares : (4, e + 1) tuple of float
-        Of each kind, of each range.
-    """
-
-    edges: tuple[float, ...]
-    shares: tuple[tuple[float, ...], ...]
-
-
-SHARES = (0.51, 0.10, 0.36, 0.03)
-"""Of all surfaces."""
-DENSITIES: Mapping[str, Density] = {
-    "length_m": Density(
-        (0.6, 1.3, 3, 6),
-        (
-            (0.23, 0.14, 0.21, 0.24, 0.18),
-            (0.1, 0.8, 0.09, 0.005, 0.01),
-            (0.29, 0.44, 0.21, 0.05, 0.02),
-            (0.11, 0.06, 0.15, 0.14, 0.54),
-        ),
-    ),
-    "thickness_m": Density(
-        (0.06, 0.3, 9),
-        (
-            (0.005, 0.24, 0.05, 0.72),
-            (0.005, 0.005, 0.005, 0.99),
-            (0.005, 0.005, 0.03, 0.97),
-            (0.005, 0.005, 0.02, 0.98),
-        ),
-    ),
-    "solid": Density(
-        (0.01, 0.4, 0.7, 0.99),
-        (
-            (0.005, 0.03, 0.12, 0.11, 0.74),
-            (0.005, 0.02, 0.02, 0.02, 0.95),
-            (0.01, 0.05, 0.03, 0.02, 0.88),
-            (0.02, 0.1, 0.02, 0.05, 0.81),
-        ),
-    ),
-    "witnesses": Density(
-        (0.25, 0.6, 1.5),
-        (
-            (0.03, 0.13, 0.54, 0.31),
-            (0.03, 0.13, 0.55, 0.29),
-            (0.07, 0.21, 0.6, 0.12),
-            (0.3, 0.28, 0.3, 0.12),
-        ),
-    ),
-    "top_m": Density(
-        (0.9, 1.3, 1.7, 1.95, 2.2, 2.5),
-        (
-            (0.01, 0.03, 0.07, 0.05, 0.08, 0.1, 0.66),
-            (0.01, 0.04, 0.15, 0.13, 0.28, 0.18, 0.22),
-            (0.07, 0.16, 0.16, 0.13, 0.14, 0.1, 0.24),
-            (0.005, 0.04, 0.08, 0.06, 0.02, 0.04, 0.75),
-        ),
-    ),
-    "overlooked": Density(
-        (0.1, 0.8),
-        ((0.89, 0.09, 0.02), (0.43, 0.39, 0.18), (0.2, 0.29, 0.52), (0.91, 0.06, 0.03)),
-    ),
-    "deep": Density(
-        (0.001, 0.016, 0.06),
-        (
-            (0.68, 0.2, 0.08, 0.03),
-            (0.37, 0.3, 0.16, 0.16),
-            (0.38, 0.18, 0.21, 0.23),
-            (0.76, 0.17, 0.04, 0.04),
-        ),
-    ),
-    "n_inner": Density(
-        (1, 2),
-        ((0.28, 0.45, 0.27), (0.43, 0.53, 0.04), (0.65, 0.3, 0.06), (0.82, 0.16, 0.02)),
-    ),
-    "n_outer": Density(
-        (1, 2),
-        ((0.8, 0.18, 0.02), (0.89, 0.11, 0.005), (0.49, 0.34, 0.17), (0.99, 0.01, 0.005)),
-    ),
-    "joint_m": Density(
-        (0.05, 0.3, 2),
-        (
-            (0.92, 0.03, 0.04, 0.02),
-            (0.92, 0.07, 0.005, 0.005),
-            (0.79, 0.09, 0.12, 0.01),
-            (0.18, 0.15, 0.08, 0.59),
-        ),
-    ),
-    "hinge_m": Density(
-        (0.2, 0.6, 1),
-        (
-            (0.01, 0.08, 0.09, 0.82),
-            (0.4, 0.3, 0.12, 0.19),
-            (0.03, 0.07, 0.1, 0.8),
-            (0.005, 0.005, 0.005, 0.99),
-        ),
-    ),
-    "before_m": Density(
-        (0.35, 0.65, 1.2),
-        (
-            (0.04, 0.06, 0.05, 0.86),
-            (0.14, 0.24, 0.11, 0.51),
-            (0.04, 0.25, 0.07, 0.64),
-            (0.02, 0.04, 0.03, 0.91),
-        ),
-    ),
-    "back_m": Density(
-        (0.32, 1),
-        ((0.12, 0.07, 0.81), (0.26, 0.13, 0.61), (0.005, 0.32, 0.67), (0.005, 0.02, 0.98)),
-    ),
-    "block_m": Density(
-        (1.4, 3),
-        ((0.005, 0.01, 0.99), (0.005, 0.005, 1), (0.21, 0.01, 0.78), (0.005, 0.005, 1)),
-    ),
-    "depth_m": Density(
-        (0.35, 0.8, 1.5, 3),
-        (
-            (0.005, 0.05, 0.02, 0.04, 0.89),
-            (0.005, 0.01, 0.07, 0.005, 0.91),
-            (0.01, 0.28, 0.17, 0.02, 0.51),
-            (0.005, 0.005, 0.005, 0.005, 0.99),
-        ),
-    ),
-    "turned_deg": Density(
-        (0.5, 2, 5, 15),
-        (
-            (0.48, 0.2, 0.07, 0.1, 0.15),
-            (0.09, 0.18, 0.22, 0.34, 0.16),
-            (0.52, 0.28, 0.1, 0.06, 0.04),
-            (0.65, 0.27, 0.04, 0.005, 0.04),
-        ),
-    ),
-    "through_glass": Density(
-        (0.05, 0.5, 0.9),
-        (
-            (0.88, 0.08, 0.04, 0.005),
-            (0.96, 0.04, 0.005, 0.005),
-            (0.94, 0.05, 0.01, 0.005),
-            (0.36, 0.15, 0.13, 0.36),
-        ),
-    ),
-    "roofed": Density(
-        (0.1, 0.3, 0.8),
-        (
-            (0.01, 0.01, 0.05, 0.93),
-            (0.005, 0.03, 0.06, 0.91),
-            (0.02, 0.01, 0.07, 0.9),
-            (0.62, 0.04, 0.11, 0.23),
-        ),
-    ),
-}
-"""By the names of `Features`: shares of the tuning half of the bench of realistic floors, rounded.
-
-`make bench ARGS="fit_things FOLDER"` counts them.
-"""
+FEATURES = tuple(field.name for field in fields(Features))
 CORNERS = (
     (3.5, 3, 0.12, 0.9),
     (3, 1.5, 0.17, 1),
@@ -207,9 +46,9 @@ def weigh_things(
 ) -> FloatArray:
     """Return the probability (n, 4) of each of `KINDS` for each surface of a building.
 
-    How much of it is furniture it says itself: shares are found by expectation maximisation, from
-    those of all buildings (Saerens, Latinne and Decaestecker 2002, Adjusting the outputs of a
-    classifier to new a priori probabilities).
+    How much of it is furniture it says itself, of what stands free and of all else: shares are
+    found by expectation maximisation, from those of all buildings (Saerens, Latinne and
+    Decaestecker 2002, Adjusting the outputs of a classifier to new a priori probabilities).
 
     Parameters
     ----------
@@ -219,17 +58,28 @@ def weigh_things(
     corners : (k, 2) int64, optional
         Pairs that meet at an outer corner.
     """
-    values = np.array([[getattr(of, name) for name in DENSITIES] for of in found], float)
-    values = values.reshape(len(found), len(DENSITIES))
-    likely = weigh_features(values, [density.shares for density in DENSITIES.values()])
+    values = list_values(found)
+    population = choose_population(values)
+    likely = weigh_features(values, population)
     if known is not None:
         # features of an answer say the same in part, what is known beside them does not
         likely[:, WALL] += known / TEMPER
-    shares = np.array(SHARES)
+    usual = np.array(population.shares)
+    weight = np.zeros_like(likely)
+    # of shelves in the middle of a shop nobody learns what its walls are
+    is_free = values[:, FEATURES.index("free")] > 0
+    for own in (is_free, ~is_free):
+        weight[own] = weigh_kinds(likely[own], _adapt_shares(likely[own], usual), TEMPER)
+    return np.exp(agree_at_corners(weight, corners))
+
+
+def _adapt_shares(likely: FloatArray, usual: FloatArray) -> FloatArray:
+    """Return the shares of kinds (4,) of surfaces as likely (n, 4), given those that are usual."""
+    shares = usual
     for _ in range(_ROUNDS):
         own = np.exp(weigh_kinds(likely, shares, TEMPER)).sum(axis=0)
-        shares = (own + _KNOWN * np.array(SHARES)) / (len(found) + _KNOWN)
-    return np.exp(agree_at_corners(weigh_kinds(likely, shares, TEMPER), corners))
+        shares = (own + _KNOWN * usual) / (len(likely) + _KNOWN)
+    return shares
 
 
 def are_outside(roofed: FloatArray) -> BoolArray:
@@ -240,8 +90,8 @@ def are_outside(roofed: FloatArray) -> BoolArray:
     roofed : (...) float64
         As of `Features`, of the ground itself.
     """
-    density = DENSITIES["roofed"]
-    weights = np.array(SHARES) * _look_up(roofed, density.edges, density.shares)
+    density = IN_SPACE.densities["roofed"]
+    weights = np.array(IN_SPACE.shares) * _look_up(roofed, density.edges, density.shares)
     return np.asarray(weights[..., OUTSIDE] > weights[..., WALL])
 
 
@@ -253,7 +103,7 @@ def weigh_pocket(length_m: float) -> float:
     length_m : float
         Of the longest surface that hides it.
     """
-    density = DENSITIES["length_m"]
+    density = IN_PLANE.densities["length_m"]
     of_kinds = _look_up(length_m, density.edges, density.shares)
     odds = POCKETS * of_kinds[FURNITURE] / of_kinds[WALL]
     return float(odds / (1 + odds))
@@ -270,19 +120,31 @@ def choose_kinds(p: FloatArray) -> list[int]:
     return kinds.tolist()
 
 
-def weigh_features(values: FloatArray, shares: Iterable[ArrayLike]) -> FloatArray:
+def list_values(found: Sequence[Features]) -> FloatArray:
+    """Return the features (n, f) of surfaces in the order of `FEATURES`."""
+    rows = [[getattr(of, name) for name in FEATURES] for of in found]
+    return np.array(rows, float).reshape(len(found), len(FEATURES))
+
+
+def choose_population(values: FloatArray) -> Population:
+    """Return which surfaces those of a building, features (n, f), are of: as their heights say."""
+    is_seen_over = ~np.isnan(values[:, FEATURES.index("overlooked")])
+    return IN_SPACE if is_seen_over.any() else IN_PLANE
+
+
+def weigh_features(values: FloatArray, population: Population) -> FloatArray:
     """Return how likely each kind makes what is known of surfaces, log: (n, 4).
 
     Parameters
     ----------
     values : (n, f) float64
-        Of each surface the features, in the order of `DENSITIES`; NaN of what is not known.
-    shares : iterable of (4, e + 1) array_like
-        Of each feature the shares of its ranges.
+        Of each surface the features, in the order of `FEATURES`; NaN of what is not known.
+    population : thing_densities.Population
     """
     likely = np.zeros((len(values), len(KINDS)))
-    for value, density, of_kinds in zip(values.T, DENSITIES.values(), shares, strict=True):
-        of_each = _look_up(value, density.edges, of_kinds)
+    for name, density in population.densities.items():
+        value = values[:, FEATURES.index(name)]
+        of_each = _look_up(value, density.edges, density.shares)
         likely += np.where(np.isnan(value)[:, None], 0.0, np.log(of_each))
     return likely
 

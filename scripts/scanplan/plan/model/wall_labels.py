@@ -1,10 +1,12 @@
 """Walls as the labels of their lines have them: openings, parts that end low, ends."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
+from shapely.geometry import Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry.intervals import find_gaps
 from scanplan.plan import wall_pairs
@@ -44,12 +46,15 @@ class LabelEvidence:
         What is open for longer parts a wall in two.
     designed : DesignedWalls, optional
         What makes labels, and walls, likelier.
+    floor : shapely geometry
+        That was seen free; by default none is known.
     """
 
     rays: RaySet
     track_m: FloatArray
     max_opening_m: float
     designed: DesignedWalls | None = None
+    floor: BaseGeometry = field(default_factory=Polygon)
 
 
 def label_wall(
