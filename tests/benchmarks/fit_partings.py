@@ -24,7 +24,7 @@ from sklearn.linear_model import LogisticRegression
 from scanplan.geometry import overlays
 from scanplan.geometry.ground_cells import GroundCells
 from scanplan.plan.model import parting_odds
-from scanplan.plan.model.room_partition import RegionGraph
+from scanplan.plan.model.room_partition import JoinedCells, RegionGraph
 from scanplan.stage import workers
 from scanplan.types import Array, BoolArray, FloatArray, IntArray, Settings
 
@@ -79,9 +79,10 @@ def observe(results: Path, settings: Settings) -> tuple[FloatArray, BoolArray]:
     parts: list[tuple[GroundCells, BoolArray]] = []
 
     def record(_: Function) -> Function:
-        def asked(cells: GroundCells, _: FloatArray, is_visited: BoolArray) -> IntArray:
+        def asked(cells: GroundCells, _: FloatArray, is_visited: BoolArray) -> JoinedCells:
             parts.append((cells, is_visited))
-            return np.zeros(len(cells.cells), np.int64)  # of what is recorded all is asked, later
+            n_cells = len(cells.cells)  # of what is recorded all is asked, later
+            return JoinedCells(np.zeros(n_cells, np.int64), np.zeros(n_cells), np.zeros(n_cells))
 
         return asked
 

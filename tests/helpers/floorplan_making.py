@@ -129,6 +129,7 @@ def rooms(polygons=ROOMS):
         "y_m": np.array([p.centroid.y for p in polygons], float),
         "closed": np.ones(n, bool),
         "n_scans": np.full(n, 2, np.int32),
+        **{name: np.full(n, np.nan) for name in ("p_whole", "p_apart")},
         **{name: np.full(n, "", object) for name in ("number", "name", "use", "corrected")},
         "geometry": np.array([shapely.to_wkb(p) for p in polygons], object),
     }

@@ -8,6 +8,7 @@ from shapely import box
 from helpers.observation_making import line_through
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import parting_lines, partings
+from scanplan.plan.rooms.room import Room
 from scanplan.plan.wall_ground import Bounds
 
 ACROSS = [(2, 2), (6, 2)]
@@ -19,7 +20,11 @@ def wall(x0, y0, x1, y1):
     return PlanWall(line_through(x0, y0, x1, y1), 0.0, length_m, 0.1, [], [])
 
 
-def find(floor, walls=(), track_m=ACROSS, *, planar=False, **known):
+def find(*asked, **known):
+    return search(*asked, **known).walls
+
+
+def search(floor, walls=(), track_m=ACROSS, *, planar=False, **known):
     return partings.find_partings(
         Bounds(walls, unpaired_m=0.1),
         parting_lines.Floor(floor, planar=planar, hidden=known.get("hidden")),
@@ -149,3 +154,17 @@ def test_lines_go_on_from_walls_and_corners_each_once():
     up = [m for m in lines_m if abs(np.ptp(m[:, 0])) < 0.05 and m[:, 1].max() > 7]
     assert len(up) == 1
     np.testing.assert_allclose(up[0], [(5, 5), (5, 8)], atol=0.01)
+
+
+def test_rooms_are_as_sure_as_what_parts_them_from_others_is():
+    """A room behind a wall that a line closes may be one with the next; one by itself is."""
+    whole = Room(box(0, 0, 8, 4), 1.0, entered=True, n_scans=1)
+    alone = search(whole.polygon).rate_rooms([whole])[0]
+    assert (alone.p_whole, alone.p_apart) == (1.0, 1.0)
+    walls = [wall(4.05, 0, 4.05, 1.0), wall(4.05, 3.4, 4.05, 4)]
+    parted = search(TWO_ROOMS, walls, planar=True)
+    rooms = [Room(of, 1.0, entered=True, n_scans=1) for of in (LEFT, RIGHT)]
+    rated = parted.rate_rooms(rooms)
+    assert all(0.5 < room.p_apart < 1.0 for room in rated)
+    assert rated[0].p_apart == rated[1].p_apart
+    assert parted.rate_rooms([]) == []

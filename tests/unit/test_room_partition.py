@@ -45,15 +45,32 @@ def test_crossing_lines_share_their_borders():
     ("log_odds", "n_rooms"), [((2, 2), 3), ((2, -2), 2), ((-2, -2), 1), ((-2, 2), 2)]
 )
 def test_cells_are_joined_over_lines_that_part_unlikely(log_odds, n_rooms):
-    room = join_cells(THIRDS, np.array(log_odds, float), np.ones(3, bool))
+    room = join_cells(THIRDS, np.array(log_odds, float), np.ones(3, bool)).room
     assert len(np.unique(room)) == n_rooms
     assert len(THIRDS.find_spans(room)) == n_rooms - 1
+
+
+def test_rooms_are_as_sure_as_their_doubtful_borders():
+    """Three rooms of 12 m2: each line adds its odds to those of one area, two for another."""
+
+    def weigh(area_m2):
+        return weigh_room(area_m2, is_visited=True, is_one=True)
+
+    more = 2 * weigh(12.0) - weigh(24.0)
+    apart = join_cells(THIRDS, np.array([2.0, 3.0]), np.ones(3, bool))
+    by_place = np.argsort([cell.centroid.x for cell in THIRDS.cells])
+    np.testing.assert_allclose(apart.apart[by_place], np.array([2, 2, 3]) + more, atol=0.01)
+    assert np.isinf(apart.whole).all()
+    both = weigh(24.0) + weigh(12.0) - weigh(36.0)
+    one = join_cells(THIRDS, np.array([-9.0, -3.0]), np.ones(3, bool))
+    np.testing.assert_allclose(one.whole, 3 - both, atol=0.01)
+    assert np.isinf(one.apart).all()
 
 
 def test_ground_that_is_no_room_goes_with_what_is_likelier_beside_it():
     """0.2 m between two lines: wherever they part, nobody can stand there."""
     cells = part_ground(HALL, np.array([line(4, 0, 4, 4), line(4.2, 0, 4.2, 4)]), 0.05)
-    room = join_cells(cells, np.array([3.0, 2.0]), np.ones(3, bool))
+    room = join_cells(cells, np.array([3.0, 2.0]), np.ones(3, bool)).room
     ((row, first, last),) = cells.find_spans(room)
     assert (row, round(first, 2), round(last, 2)) == (0, 0, 1)
 
@@ -73,7 +90,9 @@ def test_less_is_a_room_where_somebody_was():
 def test_rooms_are_unions_of_cells_and_borders_lie_between_them(places_m, odds):
     lines = np.array([line(x, 0, x, 4) for x in places_m])
     cells = part_ground(HALL, lines, 0.05)
-    room = join_cells(cells, np.array(odds[: len(lines)]), np.ones(len(cells.cells), bool))
+    joined = join_cells(cells, np.array(odds[: len(lines)]), np.ones(len(cells.cells), bool))
+    room = joined.room
+    assert (joined.whole >= 0).all() and (joined.apart >= 0).all()
     assert shapely.area(cells.cells).sum() == pytest.approx(HALL.area, abs=0.1)
     assert len(cells.find_spans(room)) == len(np.unique(room)) - 1
     for number in np.unique(room):

@@ -205,6 +205,8 @@ def room_columns(rooms: Sequence[Room]) -> dict[str, Array]:
             "y_m": y_m,
             "closed": room.closed,
             "n_scans": room.n_scans,
+            "p_whole": room.p_whole,
+            "p_apart": room.p_apart,
             **dict.fromkeys(("number", "name", "use", "corrected"), ""),
             "geometry": shapely.to_wkb(room.polygon),
         }

@@ -521,7 +521,7 @@ class _Survey:
             ways_m=surfaces.ways_m,
         )
         rooms = find_rooms(
-            wall_ground.Bounds([*bounds.walls, *parted], bounds.unpaired_m),
+            wall_ground.Bounds([*bounds.walls, *parted.walls], bounds.unpaired_m),
             self.views,
             self.track_m,
             self.settings.rooms,
@@ -538,7 +538,7 @@ class _Survey:
             hidden=surfaces.furnished,
         )
         # nothing of the plan is known of what other scans alone saw
-        rooms = [room for room in rooms if room.n_scans]
+        rooms = parted.rate_rooms([room for room in rooms if room.n_scans])
         pieces = pieces_in_rooms(pieces, [room.polygon for room in rooms])
         pieces = tell_columns(
             pieces,
@@ -547,7 +547,7 @@ class _Survey:
             furniture_height_m=self.settings.furniture.furniture_height_m,
             max_width_m=self.settings.pairs.max_thickness_m,
         )
-        return _Spaces(rooms=rooms, partings=parted, pieces=pieces)
+        return _Spaces(rooms=rooms, partings=parted.walls, pieces=pieces)
 
     def find_bare_spans(self, surfaces: _Surfaces, spaces: _Spaces) -> list[wall_ground.BareSpan]:
         """Return the spans of rooms' outlines where nothing is drawn."""

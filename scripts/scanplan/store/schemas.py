@@ -316,19 +316,24 @@ CHECKED = ("kept by hand", "checked by hand")
 """How column `corrected` begins where a person has looked, and changed nothing."""
 ROOMS = Schema(
     "rooms",
-    4,
+    5,
     {
         "room": "int32",
         **dict.fromkeys(("area_m2", "perimeter_m", "x_m", "y_m"), "float64"),
         "closed": "bool",
         "n_scans": "int32",
+        **dict.fromkeys(("p_whole", "p_apart"), "float64"),
         **dict.fromkeys(("number", "name", "use", "corrected"), "string"),
         "geometry": "binary",
     },
     ("room",),
     geometry=True,
 )
-"""Rooms: `number`, `name` and `use` are what a person calls them, empty where nobody has."""
+"""Rooms: `number`, `name` and `use` are what a person calls them, empty where nobody has.
+
+`p_whole` and `p_apart` are how likely no part of one is a room of its own, and none beside it one
+with it; NaN where a person has drawn, parted or joined it.
+"""
 FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 

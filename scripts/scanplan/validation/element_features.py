@@ -29,6 +29,8 @@ REASONS = {
     "walled": "outline partly not seen",
     "faced": "outline partly without walls",
     "broad": "small or narrow",
+    "whole": "may be several rooms",
+    "apart": "may be one with a room beside it",
 }
 """Features of elements, each the better the greater, and the doubt where one is low."""
 OF_KIND = ("thing", "line", "kind")
@@ -123,6 +125,8 @@ def _describe_rooms(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
         "walled": 1 - bare_m / perimeter_m,
         "faced": surroundings.share_faced(plan.areas, centrelines_m(plan.faces)),
         "broad": np.log(np.maximum(surroundings.measure_breadth(plan.areas), 0.1)),
+        "whole": log_odds(rooms["p_whole"]),
+        "apart": log_odds(rooms["p_apart"]),
     }
 
 

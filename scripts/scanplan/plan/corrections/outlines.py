@@ -22,6 +22,8 @@ _SLACK_M = 0.01
 """By which shapes overlap that are to be joined: more than rounding, less than is drawn."""
 _LABEL_M = 0.05
 """How far the middle of a room's largest circle may be off: a label is placed there."""
+_SAID_BY_PERSON = dict.fromkeys(("p_whole", "p_apart"), np.nan)
+"""Of rooms whose partings a person has said."""
 _SMALLEST_M2 = 0.2
 """Of a part of a room: less is a niche, or a line drawn along a wall."""
 
@@ -59,8 +61,8 @@ def split_room(
     numbers = [number, *range(first, first + len(parts) - 1)]
     for part, other in zip(parts[1:], numbers[1:], strict=True):
         own = {"room": other, **dict.fromkeys(SAID, ""), "corrected": said}
-        rows.rooms.append(room | own | shape_columns(part))
-    room |= shape_columns(parts[0]) | {"corrected": said}
+        rows.rooms.append(room | _SAID_BY_PERSON | own | shape_columns(part))
+    room |= _SAID_BY_PERSON | shape_columns(parts[0]) | {"corrected": said}
     shapes = np.array(parts, object)
     for opening in rows.openings:
         place = shapely.Point(added.ends_of(opening).mean(axis=0))
@@ -116,7 +118,7 @@ def merge_rooms(rows: PlanRows, place_m: FloatArray, other_m: FloatArray, said: 
     whole = max(shapely.get_parts(joined), key=lambda part: part.area)
     if not (whole.intersects(one) and whole.intersects(two)):
         return "is parted from the other room by a wall; remove that, too"
-    room |= shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
+    room |= _SAID_BY_PERSON | shape_columns(shapely.Polygon(whole.exterior, whole.interiors))
     room |= {"closed": room["closed"] and other["closed"], "corrected": said}
     room |= {said: room[said] or other[said] for said in SAID}
     room["n_scans"] = max(room["n_scans"], other["n_scans"])

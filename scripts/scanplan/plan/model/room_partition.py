@@ -6,6 +6,7 @@ images, PLoS ONE 8 (8)): n log n in the borders of cells.
 """
 
 import heapq
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, TypeVar
@@ -107,7 +108,25 @@ class RegionGraph(Generic[_Known]):
         self.borders[one][other] = self.borders[other][one] = both
 
 
-def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray) -> IntArray:
+@dataclass(frozen=True, eq=False)
+class JoinedCells:
+    """Which cells are one room, and how much likelier that is than the next.
+
+    Attributes
+    ----------
+    room : (c,) int64
+        The first cell of each one's room.
+    whole, apart : (c,) float64
+        Log odds that no part of its room as large as one is another, and that no room beside it is
+        one with it; inf where there is none.
+    """
+
+    room: IntArray
+    whole: FloatArray
+    apart: FloatArray
+
+
+def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray) -> JoinedCells:
     """Join the cells that are one room.
 
     Parameters
@@ -120,12 +139,12 @@ def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray)
 
     Returns
     -------
-    (c,) int64
-        The first cell of each one's room.
+    JoinedCells
     """
     graph: RegionGraph[float] = RegionGraph(ground, log_odds, is_visited)
     regions, room = graph.regions, np.arange(len(ground.cells))
     joins = dict.fromkeys(regions, 0)
+    whole, apart = (np.full(len(room), np.inf) for _ in range(2))
 
     def weigh(one: int, other: int) -> tuple[float, int, int, int, int]:
         """How much likelier two regions are apart, and how often each was joined to."""
@@ -141,9 +160,13 @@ def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray)
             break
         if one not in regions or other not in regions or at != [joins[one], joins[other]]:
             continue
+        is_room = min(regions[one].area_m2, regions[other].area_m2) >= LEAST_M2[False]
+        whole[one] = min(whole[one], whole[other], -odds if is_room else np.inf)
         graph.join(one, other)
         room[room == other] = one
         joins[one] += 1
         for third in graph.borders[one]:
             heapq.heappush(queue, weigh(*sorted((one, third))))
-    return room
+    for odds, one, other, *_ in itertools.starmap(weigh, graph.list_pairs()):
+        apart[[one, other]] = np.minimum(apart[[one, other]], odds)
+    return JoinedCells(room, whole[room], apart[room])

@@ -3,9 +3,11 @@
 import itertools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from scipy import special
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
 
@@ -20,12 +22,48 @@ from scanplan.plan.openings import GAP, OPEN, Opening
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.rooms import parting_lines
 from scanplan.plan.rooms.parting_lines import Floor
+from scanplan.plan.rooms.room import Room
 from scanplan.plan.tolerances import CORNER_M, END_M, FURNITURE_M2
 from scanplan.rays import free_space
 from scanplan.rays.face_raster import CELL_M
 from scanplan.types import FloatArray
 
 _BEYOND_M = 1.2 * END_M  # lines end at outlines that err by less
+
+
+@dataclass(frozen=True, eq=False)
+class Partings:
+    """Where free floor is parted into rooms though no wall was seen, and how likely rightly so.
+
+    Attributes
+    ----------
+    walls : list of plan_wall.PlanWall
+        Thin ones without faces, each all an opening.
+    places_m : (c, 2) float64
+        In cells of the floor.
+    whole, apart : (c,) float64
+        What `room_partition.JoinedCells` says of each cell's room.
+    """
+
+    walls: list[PlanWall]
+    places_m: FloatArray
+    whole: FloatArray
+    apart: FloatArray
+
+    def rate_rooms(self, rooms: Sequence[Room]) -> list[Room]:
+        """Return rooms with the probabilities that each is whole, and parted from all others."""
+        row, place = shapely.STRtree([room.polygon for room in rooms]).query(
+            shapely.points(self.places_m), predicate="within"
+        )[::-1]
+        whole, apart = (np.full(len(rooms), np.inf) for _ in range(2))
+        np.minimum.at(whole, row, self.whole[place])
+        np.minimum.at(apart, row, self.apart[place])
+        return [
+            replace(room, p_whole=of_whole, p_apart=of_apart)
+            for room, of_whole, of_apart in zip(
+                rooms, special.expit(whole).tolist(), special.expit(apart).tolist(), strict=True
+            )
+        ]
 
 
 def find_partings(
@@ -35,8 +73,8 @@ def find_partings(
     longest_leg_m: float,
     *,
     ways_m: Sequence[FloatArray] = (),
-) -> list[PlanWall]:
-    """Return where free floor is parted into rooms: thin walls without faces, all an opening.
+) -> Partings:
+    """Find where free floor is parted into rooms.
 
     There a wall was not seen, or its door was not; on the line of a wall nearby it stands in that.
     Where furniture hides most of the floor nothing is known of what is between.
@@ -59,6 +97,7 @@ def find_partings(
     lines = parting_lines.find_lines(grounds, bounds.walls, bounds.unpaired_m)
     on = parting_lines.WallLines.of_walls(bounds.walls, bounds.unpaired_m)
     partings, places = list(doors), shapely.points(track_m)
+    rated: list[FloatArray] = [np.empty((0, 4))]
     for ground, lines_m in zip(grounds, lines, strict=True):
         measures = parting_lines.measure_lines(ground, lines_m, on, floor)
         odds = weigh_lines(measures)
@@ -67,13 +106,16 @@ def find_partings(
         cells = part_ground(ground, lines_m, _BEYOND_M)
         visited = shapely.STRtree(cells.cells).query(places, "intersects")[1]
         is_visited = np.isin(np.arange(len(cells.cells)), visited)
-        room = join_cells(cells, odds, is_visited)
-        for row, first, last in cells.find_spans(room):
+        joined = join_cells(cells, odds, is_visited)
+        middles_m = shapely.get_coordinates(shapely.point_on_surface(cells.cells))
+        rated.append(np.column_stack([middles_m, joined.whole, joined.apart]))
+        for row, first, last in cells.find_spans(joined.room):
             ends_m = lines_m[row, 0] + np.outer([first, last], lines_m[row, 1] - lines_m[row, 0])
             is_hidden = floor.rate_hidden(ends_m[None]) > HIDDEN_SHARE
             kind = wall_ground.UNSEEN if is_hidden.all() else GAP
             partings.append(_make_parting(_snap(ends_m, bounds.walls), kind))
-    return partings
+    found = np.concatenate(rated)
+    return Partings(partings, found[:, :2], found[:, 2], found[:, 3])
 
 
 def _list_grounds(

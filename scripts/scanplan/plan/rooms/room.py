@@ -1,5 +1,6 @@
 """A room of the plan, and which rooms are beside a wall."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -47,12 +48,17 @@ class Room:
         Whether a sensor was in it.
     n_scans : int
         How many of the chosen scans saw a part of its floor.
+    p_whole, p_apart : float
+        Probability that no part of it is a room of its own, and that none beside it is one with
+        it, by the lines that may part floor. NaN: not weighed.
     """
 
     polygon: Polygon
     walled: float
     entered: bool
     n_scans: int
+    p_whole: float = math.nan
+    p_apart: float = math.nan
 
     @property
     def closed(self) -> bool:
