@@ -69,6 +69,13 @@ class TestSettled:
         (outer,) = settled(opened(2, 3.2, (0.9, 2.1), faces=[(0, 5)]), BOTH[:1])
         assert [of.kind for of in outer.openings] == ["window"]
 
+    def test_a_gap_in_what_may_be_furniture_is_no_door(self):
+        wall = opened(2, 2.9)
+        (door,) = [replace(of, p_kind=0.9) for of in wall.openings]
+        sure, doubtful = (replace(wall, openings=[door], p_wall=p) for p in (0.98, 0.5))
+        assert settled(sure, BOTH)[0].openings[0].kind == "door"
+        assert [part.openings for part in settled(doubtful, BOTH)] == [[], []]
+
     def test_what_is_nearly_likely_is_told(self):
         wall = opened(2, 2.9)
         (door,) = [replace(of, p_kind=0.3) for of in wall.openings]
@@ -97,10 +104,13 @@ class TestSettled:
 
 
 class TestOdds:
-    @given(st.sampled_from(["door", "window"]), st.floats(0.01, 0.99), st.floats(0.2, 3.0))
-    def test_more_is_likelier(self, kind, p, width_m):
+    P = st.floats(0.01, 0.99)
+
+    @given(st.sampled_from(["door", "window"]), P, st.floats(0.2, 3.0), P)
+    def test_more_is_likelier(self, kind, p, width_m, p_wall):
         within, beside = ((0, 0), (0, 1)) if kind == "door" else ((0, 1), (0, -1))
-        odds = priors.weigh_opening(kind, p, width_m, beside)
-        assert priors.weigh_opening(kind, p, width_m, within) < odds
-        assert priors.weigh_opening(kind, p, width_m + 0.1, beside) >= odds
-        assert priors.weigh_opening(kind, p + 0.005, width_m, beside) > odds
+        odds = priors.weigh_opening(kind, p, width_m, beside, p_wall)
+        assert priors.weigh_opening(kind, p, width_m, within, p_wall) < odds
+        assert priors.weigh_opening(kind, p, width_m + 0.1, beside, p_wall) >= odds
+        assert priors.weigh_opening(kind, p + 0.005, width_m, beside, p_wall) > odds
+        assert priors.weigh_opening(kind, p, width_m, beside, p_wall + 0.005) > odds

@@ -47,7 +47,9 @@ def settle_openings(
 
 
 def _weigh(opening: Opening, wall: PlanWall, rooms: Sequence[Room]) -> float:
-    """Return how likely an opening is one of its kind, by its width and what it leads to."""
+    """Return how likely an opening is one of its kind, by its width, wall, and what it leads to."""
     beside = rooms_beside(rooms, wall.at((opening.low_m + opening.high_m) / 2), wall)
-    log_odds = priors.weigh_opening(opening.kind, opening.p_kind, opening.width_m, beside)
+    log_odds = priors.weigh_opening(
+        opening.kind, opening.p_kind, opening.width_m, beside, wall.p_wall
+    )
     return 1 / (1 + math.exp(-log_odds))

@@ -103,6 +103,9 @@ _LABEL_SHARE, _WIDTH_POWER, _WITHIN_ODDS = 0.41, 9.4, 12.0
 # fall with a power of the width below the least usual one; so many doors are between two rooms,
 # and windows at the edge of what is known, for each that is within. By the openings of the tuning
 # half, in space and in the plane alike (logistic regression)
+_HOST_SHARE, _USUAL_HOST = 0.6, 0.95
+# likewise what is said of its wall, beside a wall as likely as this: gaps in rows of furniture look
+# like doors
 _BEAM_M, _BEAM = (2.1, 2.9), 0.1  # what is open ends below a beam so high above the floor so often
 
 
@@ -258,22 +261,26 @@ def log_odds(p: Array | float) -> FloatArray:
     return np.log(known / (1 - known))
 
 
-def weigh_opening(kind: str, p_labels: float, width_m: float, rooms: tuple[int, int]) -> float:
+def weigh_opening(
+    kind: str, p_labels: float, width_m: float, rooms: tuple[int, int], p_wall: float
+) -> float:
     """Return the log odds that an opening is one, and no joint, mirror or board.
 
-    `p_labels` is how likely its labels are (NaN: not weighed), `rooms` are those beside it (-1:
-    none is known).
+    `p_labels` is how likely its labels are, `p_wall` that its wall is one (NaN: not weighed),
+    `rooms` are those beside it (-1: none is known).
 
-    >>> round(weigh_opening("door", 0.99, 0.9, (0, 1)), 2)
+    >>> round(weigh_opening("door", 0.99, 0.9, (0, 1), 0.95), 2)
     1.88
-    >>> round(weigh_opening("window", 0.99, 0.6, (0, 1)), 2)
+    >>> round(weigh_opening("window", 0.99, 0.6, (0, 1), 0.95), 2)
     -3.31
     """
     of_labels = 0.0 if math.isnan(p_labels) else float(log_odds(p_labels))
+    host = 0.0 if math.isnan(p_wall) else float(log_odds(p_wall) - log_odds(_USUAL_HOST))
     usual_m = LEAST_USUAL_M[kind]
     narrow = math.log(max(min(width_m, usual_m), COLUMN_M) / usual_m)
     is_within = rooms[0] == rooms[1] if kind == "door" else min(rooms) >= 0
-    return _LABEL_SHARE * of_labels + _WIDTH_POWER * narrow - is_within * math.log(_WITHIN_ODDS)
+    of_place = _WIDTH_POWER * narrow - is_within * math.log(_WITHIN_ODDS)
+    return _LABEL_SHARE * of_labels + of_place + _HOST_SHARE * host
 
 
 def log_between_walls() -> FloatArray:
