@@ -6,7 +6,6 @@ images, PLoS ONE 8 (8)): n log n in the borders of cells.
 """
 
 import heapq
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Generic, TypeVar
@@ -156,9 +155,10 @@ def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray)
     heapq.heapify(queue)
     while queue:
         odds, one, other, *at = heapq.heappop(queue)
-        if odds >= 0:
-            break
         if one not in regions or other not in regions or at != [joins[one], joins[other]]:
+            continue
+        if odds >= 0:
+            apart[[one, other]] = np.minimum(apart[[one, other]], odds)
             continue
         is_room = min(regions[one].area_m2, regions[other].area_m2) >= LEAST_M2[False]
         whole[one] = min(whole[one], whole[other], -odds if is_room else np.inf)
@@ -167,6 +167,4 @@ def join_cells(ground: GroundCells, log_odds: FloatArray, is_visited: BoolArray)
         joins[one] += 1
         for third in graph.borders[one]:
             heapq.heappush(queue, weigh(*sorted((one, third))))
-    for odds, one, other, *_ in itertools.starmap(weigh, graph.list_pairs()):
-        apart[[one, other]] = np.minimum(apart[[one, other]], odds)
     return JoinedCells(room, whole[room], apart[room])

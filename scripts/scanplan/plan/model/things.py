@@ -26,11 +26,11 @@ CORNERS = (
     (0.12, 0.17, 1.3, 0.7),
     (0.9, 1, 0.7, 1),
 )
-"""How many times as often as by chance kinds meet at an outer corner, counted likewise: both are
-furniture, as the sides of a cupboard, or neither is."""
+"""How many times as often as by chance kinds meet at an outer corner, counted on the floors that
+`thing_densities` is of: both are furniture, as the sides of a cupboard, or neither is."""
 TEMPER = 0.5
 """Of an answer that counts: features of a surface say the same in part. What is left out of the fit
-is likeliest at it, by .11 more than where answers count whole, log."""
+is likelier at it than where answers count whole, by .10 in space and .27 in a plane, log."""
 POCKETS = 5.0
 """Fronts of furniture for each wall, of surfaces before ground that no ray reached and a wall
 closes: 53 and 11 on five real floors."""

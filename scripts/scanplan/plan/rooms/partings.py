@@ -52,9 +52,8 @@ class Partings:
 
     def rate_rooms(self, rooms: Sequence[Room]) -> list[Room]:
         """Return rooms with the probabilities that each is whole, and parted from all others."""
-        row, place = shapely.STRtree([room.polygon for room in rooms]).query(
-            shapely.points(self.places_m), predicate="within"
-        )[::-1]
+        tree = shapely.STRtree([room.polygon for room in rooms])
+        place, row = tree.query(shapely.points(self.places_m), predicate="within")
         whole, apart = (np.full(len(rooms), np.inf) for _ in range(2))
         np.minimum.at(whole, row, self.whole[place])
         np.minimum.at(apart, row, self.apart[place])
