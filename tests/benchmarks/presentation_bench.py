@@ -20,7 +20,8 @@ from scanplan.project import catalogue_file
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray, Settings
 
 _SHOWN = (
-    *("room_iou", "wall_correctness_010", "wall_completeness_010", "thickness_error_m"),
+    *("room_iou", "wall_correctness_010", "wall_completeness_010", "solid_right", "solid_complete"),
+    "thickness_error_m",
     *("angle_deg", "true_thickness", "true_door", "door_off_m", "true_window", "window_off_m"),
 )
 _LONG_M = 1.0  # a shorter wall has hardly a direction
@@ -30,7 +31,7 @@ _TRUE_KINDS = {"door": ("door", "passage"), "window": ("window",)}
 _JAMB_M = 0.3  # from the middle of a true opening to that of a drawn one
 _WIDTH_M = 0.01  # of a width that is the true one: half of what sizes of a catalogue are apart
 _ALIKE_M = 0.0015  # of a thickness that is the true one: what tables are rounded to, and a little
-_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture")
+_TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 
 def bench(results: Path, truths: Path, names: Sequence[str], settings: Settings) -> None:
@@ -65,7 +66,13 @@ def bench(results: Path, truths: Path, names: Sequence[str], settings: Settings)
         measured = score_files.read_plan(results / name)
         clear = _narrow_by_frames(placed.scene.openings, truth / "truth.geojson")
         both = (measured, _replace(measured, regular))
-        rows.append([_measure(tables, placed, clear) for tables in both])
+        solid = (measured, _leave_outlines(both[1], regular))
+        rows.append(
+            [
+                _measure(tables, placed, clear) | _measure_solid(walls, placed)
+                for tables, walls in zip(both, solid, strict=True)
+            ]
+        )
         print(f"{name}: {_format(rows[-1])}, moved by {1000 * drafted.moved_m:.0f} mm", flush=True)
     means = [
         {key: float(np.nanmean([row[number][key] for row in rows])) for key in _SHOWN}
@@ -94,6 +101,21 @@ def _replace(tables: Mapping[str, Columns], regular: FloorPlan) -> dict[str, Col
         for name, values in regular.faces.items()
     }
     return {**tables, "faces": faces, "rooms": regular.rooms, **changed}
+
+
+def _leave_outlines(tables: Mapping[str, Columns], regular: FloorPlan) -> dict[str, Columns]:
+    """Return a plan's tables without faces of walls that are outlines: perhaps they are none."""
+    faces = tables["faces"]
+    is_solid = ~np.isin(faces["wall"], regular.walls["wall"][regular.walls["perhaps"]])
+    return {**tables, "faces": {name: values[is_solid] for name, values in faces.items()}}
+
+
+def _measure_solid(tables: Mapping[str, Columns], placed: Placed) -> dict[str, float]:
+    scored = plan_scores.score_plan(tables, placed.motion, placed.scene, placed.known_sight)
+    return {
+        "solid_right": scored.measures["wall_correctness_010"],
+        "solid_complete": scored.measures["wall_completeness_010"],
+    }
 
 
 def _find_jambs(faces: Columns, regular: FloorPlan) -> BoolArray:

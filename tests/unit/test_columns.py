@@ -47,6 +47,24 @@ def test_what_goes_on_above_furniture_is_a_column_with_the_sides_it_has(turn_deg
     assert told.outline.symmetric_difference(square).area < 0.02
 
 
+def test_a_round_column_is_drawn_round():
+    disc = shapely.Point(3, 2).buffer(0.25, 32)
+    told = tell(disc)
+    assert told.kind == COLUMN
+    assert told.outline.symmetric_difference(disc).area < 0.02 * disc.area
+
+
+@pytest.mark.parametrize(("n_through", "kind"), [(0, COLUMN), (12, PIECE)])
+def test_what_a_mirror_shows_is_none_where_other_rays_go_through(n_through, kind):
+    square = box(2.8, 1.8, 3.2, 2.2)
+    # the wall in the east, seen past where the square would be
+    beyond = [(6, y, z) for y in np.linspace(1.5, 2.5, 60) for z in np.arange(0.2, 2.4, 0.1)]
+    sensors = [(SENSORS[0], returns(square)), (SENSORS[3], returns(square))]
+    seen = rays(*[*sensors, (SENSORS[1], returns(square)), *[((0.5, 2.0, 1), beyond)] * n_through])
+    (told,) = tell_columns([piece(square)], seen, WALLS, furniture_height_m=2.1, max_width_m=0.6)
+    assert told.kind == kind
+
+
 def test_a_pier_reaches_to_its_wall():
     told = tell(box(2.8, 3.6, 3.3, 3.92))
     np.testing.assert_allclose(told.outline.bounds, (2.8, 3.6, 3.3, 4.0), atol=0.015)

@@ -13,9 +13,11 @@ from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import paper_words
+from scanplan.exports.sheet.styles import STYLES
 from scanplan.geometry.arcs import trace_arc
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.store import schemas
+from scanplan.validation import confidence
 
 SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
 
@@ -41,6 +43,20 @@ def test_walls_are_solid_with_openings_cut_out_and_rooms_left_free():
     # 7.6 x 3.4 m around, the east wall 0.3 m thick, less rooms; less two doors and a window
     expected_m2 = 7.6 * 3.4 - 12 - 9 - 0.2 * 1.0 - 0.1 * 0.9 - 0.2 * 1.2
     assert ground(composed(), "poche").area == pytest.approx(expected_m2, abs=1e-6)
+
+
+@pytest.mark.parametrize(("wall", "is_outline"), [(5, True), (1, False)], ids=["within", "facade"])
+def test_what_may_be_furniture_is_an_outline_but_the_facade(wall, is_outline):
+    walls = floorplan_making.walls()
+    walls["about"] = np.full(6, "", object)
+    walls["verify"][wall], walls["about"][wall] = True, confidence.KIND
+    sheet = composed(walls=walls)
+    place = shapely.Point(4.05, 0.5) if wall == 5 else shapely.Point(7.2, 1.5)
+    assert ground(sheet, "perhaps").intersects(place) == is_outline
+    assert ground(sheet, "poche").intersects(place) != is_outline
+    assert ground(sheet, "perhaps").area < 0.3 and ground(sheet, "poche").area > 4
+    meaning = STYLES["perhaps"].meaning
+    assert (meaning in [word.text for word in paper_words(sheet)]) == is_outline
 
 
 def test_walls_are_as_black_in_cad_as_on_paper():

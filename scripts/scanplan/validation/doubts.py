@@ -177,6 +177,13 @@ def list_loose_ends(plan: FloorPlan) -> list[tuple[int, FloatArray]]:
     return [(row, _find_place_m("wall", plan.walls, row, END)) for row in rows]
 
 
+def find_of_kind(columns: Columns) -> BoolArray:
+    """Return which rows (n,) of a table are to be verified as they may be of another kind."""
+    n_rows = len(next(iter(columns.values())))
+    about = np.asarray(columns.get("about", np.full(n_rows, "")), str)
+    return np.asarray(columns.get("verify", np.zeros(n_rows)), bool) & (about == KIND)
+
+
 def find_doubtful_rooms(plan: FloorPlan) -> BoolArray:
     """Return which rooms (n,) are doubtful, their areas among it."""
     n_rooms = len(plan.rooms["room"])

@@ -46,7 +46,8 @@ def compose_presentation(
 ) -> Sheet:
     """Compose the sheet of a regular plan.
 
-    Walls are solid, also where their thickness is assumed; doors swing where a leaf was seen.
+    Walls are solid, also where their thickness is assumed, and outlines where it is not sure that
+    they are walls; doors swing where a leaf was seen.
     Rooms and openings alone are dimensioned, between surfaces that were measured; of furniture
     what a person has named is drawn, and no doubts are.
 
@@ -113,7 +114,9 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
         [*overlays.subtract_areas(plan.gaps, _find_backs(plan)), *plan.areas]
     )
     above: BaseGeometry = shapely.Polygon()
-    for kind, is_wanted in (("poche", ~plan.low), ("low", plan.low)):
+    perhaps = np.asarray(plan.walls["perhaps"], bool)
+    kinds = {"poche": ~plan.low & ~perhaps, "low": plan.low & ~perhaps, "perhaps": perhaps}
+    for kind, is_wanted in kinds.items():
         bodies = overlays.unite_areas(plan.bodies[is_wanted])
         shape = overlays.subtract_areas(overlays.subtract_areas(bodies, cut_out), above)
         above = overlays.unite_each(above, shape)

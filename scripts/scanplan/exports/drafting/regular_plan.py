@@ -15,6 +15,7 @@ from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.nominal_sizes import choose_sizes
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
+from scanplan.exports.drafting.square_columns import square_columns
 from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
@@ -22,6 +23,7 @@ from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
 from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray, IntArray
+from scanplan.validation import doubts
 
 _DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
 MEASURED, ASSUMED, REVEALS = "measured", "assumed", "reveals"
@@ -97,10 +99,11 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     """Return a plan with regular walls, its faces, rooms and openings with them, and what changed.
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
-    openings `width_changed_m`. All straight walls have a thickness; lines of those seen from one
-    side are in their middle. Curved walls stay as they are: those seen from one side have no
-    thickness, and their line is their face. Doubts are left out: they stand on the sheet of what
-    was measured.
+    openings `width_changed_m`; `perhaps` says which walls may be something else, facades apart: a
+    building has an outline in any case. All straight walls have a thickness; lines of those seen
+    from one side are in their middle. Curved walls stay as they are: those seen from one side have
+    no thickness, and their line is their face. Other doubts are left out: they stand on the sheet
+    of what was measured.
     """
     whole = leave_scraps(surveyed)
     is_facade = find_facades(whole)
@@ -143,6 +146,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "turned_deg": turned_deg,
         "thickness_changed_m": grown_m,
         "thickness_from": thickness_from,
+        "perhaps": doubts.find_of_kind(plan.walls) & ~is_facade,
     }
     regular = settle_loose(
         replace(
@@ -151,6 +155,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
             faces=_leave_doubts(_move_faces(plan, moved)),
             openings={**_leave_doubts(openings), "corrected": openings["corrected"]},
             rooms=_leave_doubts(_move_rooms(plan, moved)),
+            furniture=square_columns(plan.furniture, drawn_m, settings.tolerance_m),
         )
     )
     kinds = [

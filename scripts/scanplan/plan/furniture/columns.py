@@ -10,16 +10,23 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
+from scanplan.geometry.arcs import Circles, fit_circles
+from scanplan.geometry.lines import Line
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.plan import wall_ground
 from scanplan.plan.furniture.pieces import Piece
+from scanplan.plan.model import priors
 from scanplan.plan.plan_wall import PlanWall
 from scanplan.plan.tolerances import END_M, ENOUGH_RAYS, FACE_M, LOW_PERCENT, NOISE_M
 from scanplan.rays.face_raster import CELL_M
+from scanplan.rays.face_rays import cast_at_face
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import FEW, SKIRTING_M, STRETCH_M
 from scanplan.store.schemas import COLUMN
 from scanplan.types import FloatArray, IntArray
+
+_AMID = 0.7  # of a diagonal: at corners rays go by
+_QUARTER = 8  # sides of a quarter of a circle: within 2 mm of it where columns are 0.6 m wide
 
 
 def tell_columns(
@@ -33,8 +40,8 @@ def tell_columns(
     """Return pieces of furniture, those that are columns as such.
 
     A column is seen from near the floor up to where no furniture is, without a pause, by several
-    scans, and no side of it is wider than a wall is thick. It is drawn as the rectangle that its
-    returns fill, up to the wall that it stands against.
+    scans, it stops rays, and it is no wider than a wall is thick. It is drawn as the circle or the
+    rectangle that its returns lie on, this up to the wall that it stands against.
 
     Parameters
     ----------
@@ -121,14 +128,12 @@ def _tell(
     levels_m = np.concatenate([[0.0], np.sort(xyz_m[~is_high, 2]), [furniture_height_m]])
     if np.diff(levels_m).max() > STRETCH_M:
         return piece
-    drawn = _fit_rectangle(xyz_m[:, :2])
-    corners_m = shapely.get_coordinates(drawn)
-    sides_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
-    if sides_m.max() > max_width_m or sides_m.min() < END_M:
+    drawn = _fit_outline(xyz_m[:, :2], max_width_m, solid)
+    if drawn is None or _weigh_rays(drawn, rays) < 0:
         return piece
     return replace(
         piece,
-        outline=_extend_to(drawn, solid),
+        outline=drawn,
         z_max_m=float(np.percentile(xyz_m[is_high, 2], 100 - LOW_PERCENT)),
         n_points=len(xyz_m),
         n_scans=len(np.unique(scan)),
@@ -144,6 +149,68 @@ def _returns_above(outline: Polygon, rays: RaySet) -> tuple[FloatArray, IntArray
     xyz_m = xyz_m - (0.0, 0.0, rays.ground_z_m)
     is_over = shapely.contains_xy(outline, xyz_m[:, :2]) & (xyz_m[:, 2] > SKIRTING_M)
     return xyz_m[is_over], scan[is_over]
+
+
+def _weigh_rays(drawn: Polygon, rays: RaySet) -> float:
+    """Return the log odds that what stands on an outline stops the rays that meet it.
+
+    What a mirror or a pane shows stands where other rays go through. Asked in both diagonals of the
+    rectangle around it, as each ray meets one of them.
+    """
+    corners_m = shapely.get_coordinates(shapely.minimum_rotated_rectangle(drawn))[:4]
+    n_stopped, n_passed = 0, 0
+    for ends_m in (corners_m[::2], corners_m[1::2]):
+        way_m = ends_m[1] - ends_m[0]
+        length_m = float(np.hypot(*way_m))
+        line = Line(ends_m.mean(axis=0), np.array([-way_m[1], way_m[0]]) / length_m)
+        met = cast_at_face(
+            rays, line, -_AMID * length_m / 2, _AMID * length_m / 2, at_m=length_m / 2
+        )
+        is_above = met.height_m > SKIRTING_M
+        is_passing = met.is_free(length_m / 2 + FACE_M)
+        n_passed += int((is_above & is_passing).sum())
+        n_stopped += int((is_above & ~is_passing & ~met.is_occluded).sum())
+    return priors.weigh_stops(n_stopped, n_passed)
+
+
+def _fit_outline(xy_m: FloatArray, max_width_m: float, solid: BaseGeometry) -> Polygon | None:
+    """Return the rectangle or the circle that points (n, 2) lie nearer to; None of none so wide.
+
+    A rectangle goes on to the wall that it stands against.
+    """
+    rectangle, circle = _fit_rectangle(xy_m), _fit_circle(xy_m)
+    off_m = np.asarray(shapely.distance(shapely.points(xy_m), rectangle.exterior))
+    if circle is not None and _mean_square(circle.residual_m) < _mean_square(off_m):
+        radius_m = float(circle.radii_m[0])
+        is_column = END_M <= 2 * radius_m <= max_width_m
+        return shapely.Point(circle.centre_m).buffer(radius_m, _QUARTER) if is_column else None
+    corners_m = shapely.get_coordinates(rectangle)
+    sides_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
+    is_column = sides_m.max() <= max_width_m and sides_m.min() >= END_M
+    return _extend_to(rectangle, solid) if is_column else None
+
+
+def _mean_square(off_m: FloatArray) -> float:
+    """Return the mean of squares of distances (n,), strays as far as others are at most."""
+    return float(np.mean(np.minimum(np.abs(off_m), 3 * NOISE_M) ** 2))
+
+
+def _fit_circle(xy_m: FloatArray) -> Circles | None:
+    """Return the circle that most of points (n, 2) lie on; residuals are those of all."""
+    first = _fit_all(xy_m)
+    if first is None:
+        return None
+    far_m = np.abs(first.residual_m)
+    circle = _fit_all(xy_m[far_m <= np.percentile(far_m, 100 - 2 * LOW_PERCENT)])
+    if circle is None:
+        return None
+    off_m = np.hypot(*(xy_m - circle.centre_m).T) - circle.radii_m[0]
+    return replace(circle, residual_m=off_m)
+
+
+def _fit_all(xy_m: FloatArray) -> Circles | None:
+    one = np.zeros(len(xy_m), np.int64)
+    return fit_circles(xy_m, np.ones(len(xy_m)), one, xy_m.mean(axis=0))
 
 
 def _fit_rectangle(xy_m: FloatArray) -> Polygon:

@@ -144,6 +144,19 @@ def weigh_states(ends: FloatArray) -> FloatArray:
     return WITNESS * np.logaddexp(likely + np.log1p(-_ODD), odd)
 
 
+def weigh_stops(n_stopped: int, n_passed: int) -> float:
+    """Return the log odds that what so many rays end in, and so many go through, is solid.
+
+    By how square rays end at walls, and at ways to the next one.
+
+    >>> weigh_stops(90, 10) > 0 > weigh_stops(60, 40)
+    True
+    """
+    solid, way = _ENDS[_WALL, 0], _ENDS[_IN, 0]
+    stop, go = math.log(solid[:3].sum() / way[:3].sum()), math.log(solid[3] / way[3])
+    return n_stopped * stop + n_passed * go
+
+
 def list_labels(n_rows: int, *, line: int) -> Labels:
     """Return the labels of a line that is `INNER`, `OUTER`, `FRONT` or `ROW`, with so many rows."""
     panes = (_PANE, *_FRONT_PANES) if line == FRONT else (_PANE,)
