@@ -301,6 +301,37 @@ def test_a_wall_that_stood_within_a_room_opens_none(plan):
     assert len(found.walls["wall"]) == 6 and found.rooms["closed"].all()
 
 
+@pytest.mark.parametrize("thickness_m", [0.04, 0.36, 0.6])
+def test_a_wall_seen_from_one_side_leaves_rooms_closed_however_thick_it_is(plan, thickness_m):
+    walls = MADE["walls"]()
+    # no other is known, so that what is said is the usual thickness
+    walls["thickness_m"][1:] = np.nan
+    walls["face_right"][1:] = -1
+    tables.write_table(plan["walls"], planning.TABLES["walls"], walls)
+    facade = {"element": "wall", "at": [7.1, 2.0], "thickness_m": thickness_m}
+    found = corrected(plan, facade)
+    assert found.walls["thickness_m"][1] == thickness_m and found.rooms["closed"].all()
+
+
+@pytest.mark.parametrize("said", [{"kind": "furniture"}, {"action": "remove"}])
+def test_the_ground_behind_a_front_that_is_none_is_its_rooms(plan, said):
+    walls = MADE["walls"]()
+    front = {name: values[1:2] for name, values in walls.items()} | {
+        "wall": np.array([6], np.int32)
+    }
+    front |= {"x0_m": [3.4], "y0_m": [3.1], "x1_m": [3.4], "y1_m": [1.5]}
+    grown = {n: np.append(v, np.asarray(front[n], v.dtype)) for n, v in walls.items()}
+    tables.write_table(plan["walls"], planning.TABLES["walls"], grown)
+    rooms = MADE["rooms"]()
+    # its side, at y = 1.5, was not seen
+    rooms["geometry"][0] = shapely.to_wkb(shapely.box(0, 0, 4, 3) - shapely.box(3.4, 1.5, 4, 3))
+    tables.write_table(plan["rooms"], planning.TABLES["rooms"], rooms)
+    found = corrected(plan, {"element": "wall", "at": [3.4, 2.2], **said})
+    assert found.rooms["closed"].all()
+    assert found.rooms["area_m2"][0] == pytest.approx(12.0, abs=0.01)
+    assert found.areas[0].symmetric_difference(shapely.box(0, 0, 4, 3)).area < 0.01
+
+
 def test_a_wall_drawn_along_an_open_side_closes_the_room(plan):
     walls = {n: v[[0, 1, 2, 3, 4]] for n, v in MADE["walls"]().items()}
     tables.write_table(plan["walls"], planning.TABLES["walls"], walls)

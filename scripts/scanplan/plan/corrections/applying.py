@@ -9,6 +9,7 @@ import shapely
 from scanplan.errors import StageError
 from scanplan.plan.corrections import added, changed, enclosure, named, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.plan.plan_wall import median_thickness_m
 from scanplan.project.corrections_file import LENGTH, OUTLINES, POINTS, SETTLE, Correction
 from scanplan.store import schemas
 from scanplan.types import FloatArray
@@ -74,7 +75,8 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         left of the plan.
     """
     outcome = Outcome()
-    enclosed = enclosure.draw_enclosure(rows)
+    usual_m = median_thickness_m([wall["thickness_m"] for wall in rows.walls])
+    enclosed = enclosure.draw_enclosure(rows, usual_m)
     said = [c for c in corrections if c.element not in (*POINTS, LENGTH)]
     of_rooms = [c for c in said if c.element == "room" and c.action not in (*OUTLINES, SETTLE)]
     _apply_found(rows, [c for c in said if c.element != "room" and c.action != "add"], outcome)
@@ -91,7 +93,7 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         _tell_outline(correction, "does not part the room from wall to wall")
         for correction in pending
     ]
-    for room, bare_m in enclosure.follow_enclosure(rows, enclosed):
+    for room, bare_m in enclosure.follow_enclosure(rows, enclosed, usual_m):
         fault = f"room {room['room']} is open along {bare_m:.1f} m where nothing stands any more"
         outcome.told.append(f"{fault}; merge it with the room beyond, or add a wall or an opening")
     _apply_found(rows, of_rooms, outcome)

@@ -6,55 +6,81 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bare_parts, overlays
 from scanplan.plan import floorplan
+from scanplan.plan.corrections.outlines import shape_columns
 from scanplan.plan.corrections.rows import PlanRows, Row
-from scanplan.plan.plan_wall import median_thickness_m
 from scanplan.plan.rooms.room import CLOSED_SHARE
-from scanplan.plan.tolerances import CORNER_M, END_M
+from scanplan.plan.tolerances import CORNER_M, END_M, FURNITURE_M2
 
 _BARE = ("gap", "unseen")
 """Types of openings that enclose nothing where they stand in no wall."""
 _THIN_M = 0.02
 """How wide a line that parts floor is drawn: hardly any floor lies on it."""
+_GRID_M = 1e-4
+"""What stands where it stood leaves no hairs by rounding."""
 _SLACK_M = 0.05
 """From a wall's ground to an outline along it: outlines follow faces, which differ by noise."""
 
 
-def draw_enclosure(rows: PlanRows) -> BaseGeometry:
-    """Return the ground that walls, openings and lines that part floor stand on, map frame."""
-    usual_m = median_thickness_m([row["thickness_m"] for row in rows.walls])
+def draw_enclosure(rows: PlanRows, usual_m: float) -> BaseGeometry:
+    """Return the ground that walls, openings and lines that part floor stand on, map frame.
+
+    A wall of one side lies behind it, `usual_m` deep.
+    """
     parting = [row for row in rows.openings if row["wall"] < 0 and row["type"] not in _BARE]
-    in_walls = [row for row in rows.openings if row["wall"] >= 0]
-    # a wall of one side lies behind it by as much as others are thick
-    half_m = [row["thickness_m"] / 2 for row in (*rows.walls, *in_walls)]
-    half_m = np.nan_to_num([*half_m, *[_THIN_M / 2] * len(parting)], nan=usual_m)
-    axes = [floorplan.draw_axis(row) for row in (*rows.walls, *in_walls, *parting)]
-    strips = overlays.buffer_shapes(np.array(axes, object), half_m, cap_style="flat")
+    in_walls = [(row, wall) for row in rows.openings if (wall := rows.wall_of(row))]
+    standing = [*((wall, wall) for wall in rows.walls), *in_walls]
+    axes = [
+        *(_draw_middle(row, wall, usual_m) for row, wall in standing),
+        *map(floorplan.draw_axis, parting),
+    ]
+    half_m = [*(row["thickness_m"] / 2 for row, _ in standing), *[_THIN_M / 2] * len(parting)]
+    known_m = np.nan_to_num(np.array(half_m, float), nan=usual_m / 2)
+    strips = overlays.buffer_shapes(np.array(axes, object), known_m, cap_style="flat")
     return overlays.unite_areas(strips)
 
 
-def follow_enclosure(rows: PlanRows, before: BaseGeometry) -> list[tuple[Row, float]]:
+def _draw_middle(row: Row, wall: Row, usual_m: float) -> BaseGeometry:
+    """Return the middle of a wall, or of an opening in it."""
+    axis = floorplan.draw_axis(row)
+    if np.isfinite(row["thickness_m"]):
+        return axis
+    is_seen_from_left = wall["face_left"] >= 0 or wall["face_right"] < 0
+    return shapely.offset_curve(axis, (-1 if is_seen_from_left else 1) * usual_m / 2)
+
+
+def follow_enclosure(
+    rows: PlanRows, before: BaseGeometry, usual_m: float
+) -> list[tuple[Row, float]]:
     """Open rooms of which a side went, and close those that now have all.
 
     Scans miss corners and short gaps, so that a tenth of an outline may be bare. What a person
-    takes away is no such gap: more than a corner of it opens a room.
+    takes away is no such gap: more than a corner of it opens a room. A pocket that it hid goes with
+    its room: furniture stands there.
 
     Parameters
     ----------
     before : shapely geometry
         `draw_enclosure` of the plan that was corrected.
+    usual_m : float
+        How deep a wall of one side is.
 
     Returns
     -------
     list of (row, float)
         Rooms that are open by it, and how many metres of their outlines are bare.
     """
-    after = draw_enclosure(rows)
-    gone, come = overlays.subtract_areas(before, after), overlays.subtract_areas(after, before)
+    after = draw_enclosure(rows, usual_m)
+    gone = overlays.subtract_areas(before, after, grid=_GRID_M)
+    come = overlays.subtract_areas(after, before, grid=_GRID_M)
+    _join_pockets(rows, gone, after)
     walled = _draw_beside(after)
+    left = overlays.buffer_shapes(gone, _SLACK_M, join_style="mitre")
+    # what is behind a wall that became thinner is at no room
+    left = overlays.subtract_areas(left, overlays.buffer_shapes(after, _SLACK_M))
     opened: list[tuple[Row, float]] = []
     for room in rows.rooms:
         outline = shapely.from_wkb(room["geometry"])
-        bare_m = _measure_bare_m(outline, gone, walled)
+        bare_m = _measure_bare_m(outline, left, walled)
         if bare_m > CORNER_M:
             room["closed"] = False
             opened.append((room, bare_m))
@@ -64,13 +90,32 @@ def follow_enclosure(rows: PlanRows, before: BaseGeometry) -> list[tuple[Row, fl
     return opened
 
 
-def _measure_bare_m(outline: shapely.Polygon, gone: BaseGeometry, walled: BaseGeometry) -> float:
-    """Return how much of an outline is bare for ground that nothing stands on any more.
+def _join_pockets(rows: PlanRows, gone: BaseGeometry, after: BaseGeometry) -> None:
+    """Give rooms the ground that walls and they enclose, where what parted it from them is gone."""
+    outlines = [shapely.from_wkb(room["geometry"]) for room in rows.rooms]
+    closed = overlays.buffer_shapes(overlays.unite_areas([after, *outlines]), _SLACK_M)
+    holes = [shapely.Polygon(ring) for part in shapely.get_parts(closed) for ring in part.interiors]
+    for hole in holes if rows.rooms else []:
+        pocket = overlays.buffer_shapes(hole, 2 * _SLACK_M, join_style="mitre")
+        pocket = overlays.subtract_areas(pocket, after)
+        parted = overlays.intersect_areas(gone, pocket)
+        near = overlays.buffer_shapes(np.array(outlines, object), 2 * _SLACK_M)
+        beside_m2 = shapely.area(overlays.intersect_areas(near, parted))
+        row = int(np.argmax(beside_m2))
+        if beside_m2[row] > 0 and hole.area <= FURNITURE_M2:
+            others = overlays.unite_areas(outlines[:row] + outlines[row + 1 :])
+            own = overlays.subtract_areas(pocket, others)
+            whole = overlays.unite_areas([outlines[row], own])
+            outlines[row] = max(shapely.get_parts(whole), key=lambda part: part.area)
+            rows.rooms[row] |= shape_columns(outlines[row])
+
+
+def _measure_bare_m(outline: shapely.Polygon, left: BaseGeometry, walled: BaseGeometry) -> float:
+    """Return how much of an outline is bare for ground that is left empty, and a little around.
 
     What stood within one room, or into it, leaves none: the outline is drawn across its ground.
     """
-    grown = overlays.buffer_shapes(gone, _SLACK_M, join_style="mitre")
-    near = [part for part in shapely.get_parts(grown) if part.intersects(outline)]
+    near = [part for part in shapely.get_parts(left) if part.intersects(outline)]
     if not near:
         return 0.0
     joined = overlays.unite_areas([outline, *near])
