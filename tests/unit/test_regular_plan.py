@@ -231,6 +231,15 @@ def test_rooms_follow_walls_and_leave_neither_gap_nor_overlap():
     assert regular.rooms["area_m2"] == pytest.approx([shape.area for shape in expected])
 
 
+def test_an_outline_turns_at_corners_alone_wherever_it_begins():
+    wavering = [(1.5, 0), (2, 0.002), (4, 0), (4, 1), (4.001, 2), (4, 3), (0, 3), (0, 0), (1, 0)]
+    rooms = floorplan_making.rooms([shapely.Polygon(wavering), floorplan_making.ROOMS[1]])
+    regular, _ = draft_plan(floorplan_making.plan(rooms=rooms), SETTINGS)
+    assert shapely.get_num_coordinates(regular.areas).tolist() == [5, 5]
+    assert regular.areas[0].symmetric_difference(floorplan_making.ROOMS[0]).area < 1e-6
+    assert regular.rooms["perimeter_m"][0] == pytest.approx(14)
+
+
 def test_an_opening_is_in_its_wall_and_of_a_size_of_the_catalogue():
     rows = [(0, 1.0, 0, 1.88), (-0.1, 1.0, -0.1, 2.05)]
     openings = floorplan_making.openings(

@@ -70,7 +70,11 @@ def test_what_is_hardly_longer_than_its_ends_err_by_is_left_out_in_the_midst_of_
     plan = with_wall((end_m, 1.5, 4.05, 1.5))
     first = floorplan_making.ROOMS[0].difference(nib)
     plan = replace(plan, rooms=floorplan_making.rooms([first, floorplan_making.ROOMS[1]]))
-    assert (NEW not in leave_scraps(plan).walls["wall"]) == is_left_out
+    left = leave_scraps(plan)
+    assert (NEW not in left.walls["wall"]) == is_left_out
+    # the room has its ground
+    assert left.areas[0].area == pytest.approx(12 if is_left_out else first.area)
+    assert left.areas[1].equals(floorplan_making.ROOMS[1])
 
 
 def test_a_wall_that_is_mostly_a_way_from_a_room_into_itself_goes_with_it():

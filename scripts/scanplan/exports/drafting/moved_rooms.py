@@ -15,6 +15,8 @@ ON_M = 0.02
 """What lies on a wall's side is off it by less: outlines are drawn along sides."""
 _ALONG_SINE = 0.05  # of 3 degrees: an edge that runs along a wall
 _CORNER_SINE = 0.17  # of 10 degrees: edges that turn less go on, and do not cross
+_STRAIGHT_M = 0.005
+"""Off a straight line by less is noise of faces, and no more than a hair on paper."""
 _LEAST_EDGE_M = 0.03  # a shorter one has no direction
 
 
@@ -30,7 +32,21 @@ def move_outline(outline: Polygon, moved: MovedWalls) -> Polygon:
     whole = [ring for ring in rings if len(ring) >= 3]
     shape = overlays.repair_areas(Polygon(whole[0], whole[1:])) if whole else outline
     parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
-    return max(parts, key=lambda part: part.area, default=outline)
+    return _straighten(max(parts, key=lambda part: part.area, default=outline))
+
+
+def _straighten(outline: Polygon) -> Polygon:
+    """Return an outline without corners at which it does not turn, the first of each ring too."""
+    kept = overlays.simplify_shapes(outline, _STRAIGHT_M)
+    turned = [_turn_ring(shapely.get_coordinates(ring)) for ring in shapely.get_rings(kept)]
+    again = overlays.simplify_shapes(Polygon(turned[0], turned[1:]), _STRAIGHT_M)
+    fewest = min(kept, again, key=shapely.get_num_coordinates)
+    return fewest if isinstance(fewest, Polygon) and fewest.is_valid else outline
+
+
+def _turn_ring(corners_m: FloatArray) -> FloatArray:
+    """Return a ring that begins at another of its corners."""
+    return np.concatenate([corners_m[1:], corners_m[1:2]])
 
 
 def _move_ring(corners_m: FloatArray, moved: MovedWalls) -> list[FloatArray]:

@@ -13,7 +13,7 @@ from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan, centrelines_m
 from scanplan.plan.tolerances import CORNER_M, END_M
-from scanplan.types import BoolArray, FloatArray
+from scanplan.types import BoolArray, Columns, FloatArray
 
 BARE = ("passage", "gap")
 """Types of openings without a leaf or a pane."""
@@ -36,6 +36,8 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
     - what crosses a facade or lies behind it, bounds no room and is turned away from it: what is
       seen through windows;
     - what lies in a thicker wall, or beside it by what faces err by: its one side once more.
+
+    Rooms have the ground of what is left out, as far as they go around it.
     """
     floor = overlays.unite_areas(plan.areas)
     is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan, floor)
@@ -52,7 +54,32 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
         walls={name: values[~is_left_out] for name, values in plan.walls.items()},
         faces={name: values[is_shown] for name, values in plan.faces.items()},
         openings={name: values[is_wide] for name, values in plan.openings.items()},
+        rooms=_fill_rooms(plan, is_left_out),
     )
+
+
+def _fill_rooms(plan: FloorPlan, is_left_out: BoolArray) -> Columns:
+    """Return rooms without the niches that are left of walls."""
+    bodies = overlays.buffer_shapes(plan.bodies, moved_rooms.ON_M, join_style="mitre")
+    taken = overlays.unite_areas([*plan.bodies[~is_left_out], *plan.areas])
+    bare = overlays.subtract_areas(overlays.unite_areas(bodies[is_left_out]), taken)
+    if bare.is_empty:
+        return plan.rooms
+    outlines = [
+        max(
+            shapely.get_parts(overlays.unite_areas([area, _find_niches(area, bare)])),
+            key=lambda part: part.area,
+        )
+        for area in plan.areas
+    ]
+    return {**plan.rooms, "geometry": np.array(shapely.to_wkb(outlines), object)}
+
+
+def _find_niches(area: shapely.Polygon, bare: BaseGeometry) -> BaseGeometry:
+    """Return what of bare ground lies in narrow niches of a room."""
+    grown = overlays.buffer_shapes(area, END_M, join_style="mitre")
+    closed = overlays.buffer_shapes(grown, -END_M, join_style="mitre")
+    return overlays.intersect_areas(closed, bare)
 
 
 def find_nowhere(plan: FloorPlan) -> BoolArray:

@@ -27,25 +27,21 @@ def draw_enclosure(rows: PlanRows, usual_m: float) -> BaseGeometry:
     A wall of one side lies behind it, `usual_m` deep.
     """
     parting = [row for row in rows.openings if row["wall"] < 0 and row["type"] not in _BARE]
+    axes = np.array([floorplan.draw_axis(row) for row in parting], object)
+    lines = overlays.buffer_shapes(axes, _THIN_M / 2, cap_style="flat")
     in_walls = [(row, wall) for row in rows.openings if (wall := rows.wall_of(row))]
     standing = [*((wall, wall) for wall in rows.walls), *in_walls]
-    axes = [
-        *(_draw_middle(row, wall, usual_m) for row, wall in standing),
-        *map(floorplan.draw_axis, parting),
-    ]
-    half_m = [*(row["thickness_m"] / 2 for row, _ in standing), *[_THIN_M / 2] * len(parting)]
-    known_m = np.nan_to_num(np.array(half_m, float), nan=usual_m / 2)
-    strips = overlays.buffer_shapes(np.array(axes, object), known_m, cap_style="flat")
-    return overlays.unite_areas(strips)
+    return overlays.unite_areas([*lines, *(_draw_strip(*of, usual_m) for of in standing)])
 
 
-def _draw_middle(row: Row, wall: Row, usual_m: float) -> BaseGeometry:
-    """Return the middle of a wall, or of an opening in it."""
+def _draw_strip(row: Row, wall: Row, usual_m: float) -> BaseGeometry:
+    """Return the ground of a wall, or of an opening in it."""
     axis = floorplan.draw_axis(row)
     if np.isfinite(row["thickness_m"]):
-        return axis
+        return overlays.buffer_shapes(axis, row["thickness_m"] / 2, cap_style="flat")
     is_seen_from_left = wall["face_left"] >= 0 or wall["face_right"] < 0
-    return shapely.offset_curve(axis, (-1 if is_seen_from_left else 1) * usual_m / 2)
+    behind_m = -usual_m if is_seen_from_left else usual_m
+    return overlays.buffer_shapes(axis, behind_m, single_sided=True)
 
 
 def follow_enclosure(
