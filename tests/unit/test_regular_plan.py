@@ -317,14 +317,15 @@ def test_the_same_plan_gives_the_same_bytes():
 
 
 def test_openings_of_one_width_that_no_catalogue_has_are_drawn_alike():
-    doors = [(x, x + width_m) for x, width_m in ((1, 0.741), (2, 0.75), (3, 0.752), (5, 1.3))]
+    doors = [(x, x + width_m) for x, width_m in ((1, 0.741), (2, 0.74), (3, 0.739), (5, 1.342))]
     rows = [((x0, -0.1, x1, -0.1), 0, "door", 0.0, 2.0, 0, -1) for x0, x1 in doors]
     plan = floorplan_making.plan(openings=floorplan_making.openings(rows))
     widths_m = draft_plan(plan, SETTINGS)[0].openings["width_m"]
-    assert widths_m == pytest.approx([0.75, 0.75, 0.75, 1.3])
+    # one of a size that none has is even, what doors are seen too narrow by counted
+    assert widths_m == pytest.approx([0.74, 0.74, 0.74, 1.35])
     # two may be alike by chance
     two = floorplan_making.plan(openings=floorplan_making.openings(rows[1:]))
-    assert draft_plan(two, SETTINGS)[0].openings["width_m"] == pytest.approx([0.75, 0.752, 1.3])
+    assert draft_plan(two, SETTINGS)[0].openings["width_m"] == pytest.approx([0.75, 0.75, 1.35])
     none = replace(SETTINGS, doors_m=())
     assert draft_plan(plan, none)[1].width_m == pytest.approx(0)
 

@@ -13,6 +13,7 @@ _CHANGED_M = 0.03  # sizes are a decimetre apart: what is farther off is none of
 # doors are seen narrower than they are, by what stands in them and by edges of jambs: in the median
 # by 1 to 6 cm on six drives of the bench's tuning half and three published buildings, windows by 0
 _NARROWED_M = {"door": 0.02}
+_EVEN_M = 0.05  # what no catalogue has is drawn to: as fine as widths are known
 _APART_M = 0.02  # between openings, and from the end of their wall: thinner piers are not built
 
 
@@ -26,7 +27,8 @@ def move_openings(
     """Return openings in the lines of their walls, with a column `width_changed_m`.
 
     One of nearly a size of the catalogue, or of a size that several others have, is as wide, about
-    its middle, where it has room for it; an empty list changes nothing.
+    its middle, where it has room for it; another is of an even width. An empty list changes
+    nothing.
 
     Parameters
     ----------
@@ -58,6 +60,10 @@ def move_openings(
             np.ones(len(rows)),
         )
         nominal_m += narrowed_m * np.isin(nominal_m, seen_m)
+        if sizes:
+            even_m = _EVEN_M * np.round((widths_m[rows] + narrowed_m) / _EVEN_M)
+            is_other = np.isnan(nominal_m) & (np.abs(even_m - widths_m[rows]) <= tolerance_m)
+            nominal_m = np.where(is_other, even_m, nominal_m)
         wanted_m[rows] = np.where(np.isnan(nominal_m), widths_m[rows], nominal_m)
     for wall in np.unique(hosts[hosts >= 0]).tolist():
         rows = np.flatnonzero(hosts == wall)
