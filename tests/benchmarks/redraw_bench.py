@@ -38,7 +38,7 @@ _ALONG_DEG = 5.0  # between walls that run side by side
 _ASKEW_DEG = (0.1, 2.0)  # what is seen on paper: 2 mm on a metre; and what is meant to be oblique
 _ON_M = 0.01
 _SWING_M = 0.1  # a leaf is hinged in its wall's side, and frames stand in its way
-_WALLS = {"wall", "poche", "perhaps", "inferred", "low", "assumed", "column"}
+_WALLS = {"wall", "poche", "post", "perhaps", "inferred", "low", "assumed", "column"}
 _TABLES = ("faces", "walls", "openings", "rooms", "free", "furniture", "confidence")
 
 

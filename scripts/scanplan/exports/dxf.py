@@ -27,7 +27,13 @@ from scanplan.exports.sheet.symbols import block_scales, choose_block, symbol_an
 from scanplan.exports.sheet.title import TITLE_TAG
 from scanplan.types import FloatArray
 
-_HATCHES = {"wall": "SOLID", "poche": "SOLID", "assumed": "ANSI31", "scale-bar": "SOLID"}
+_HATCHES = {
+    "wall": "SOLID",
+    "poche": "SOLID",
+    "post": "SOLID",
+    "assumed": "ANSI31",
+    "scale-bar": "SOLID",
+}
 _INK_COLOUR = 7  # of the index of colours of CAD: black on white, white on black
 _ALIGNMENTS = {
     0.0: TextEntityAlignment.MIDDLE_LEFT,

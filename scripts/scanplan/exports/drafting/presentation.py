@@ -127,7 +127,7 @@ def _draw_marks(plan: FloorPlan) -> Iterator[Mark]:
     is_column = plan.furniture["kind"] == schemas.COLUMN
     outlines = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object)[is_column])
     for number, outline in zip(plan.furniture["furniture"][is_column], outlines, strict=True):
-        yield content.draw_area("poche", outline, f"column-{number}", "column")
+        yield content.draw_area("post", outline, f"column-{number}", "column")
     yield from draw_fixtures(plan)
 
 

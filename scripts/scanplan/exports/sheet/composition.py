@@ -199,7 +199,7 @@ def _drop_specks(page: Page, marks: list[Mark]) -> list[Mark]:
 
 def _open_space(page: Page, marks: list[Mark], symbols: list[Symbol]) -> LabelSpace:
     """Return the part of the sheet above the tables, with what words keep off."""
-    solid = {"wall", "poche", "perhaps", "inferred", "low", "assumed", "column"}
+    solid = {"wall", "poche", "post", "perhaps", "inferred", "low", "assumed", "column"}
     walls = [
         polygon for mark in marks if mark.kind in solid for polygon in _rings(page, mark.paths)
     ]

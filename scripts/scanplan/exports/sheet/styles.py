@@ -153,6 +153,7 @@ STYLES = {
     "low": Style("A-WALL-PRHT", "wall or furniture below the ceiling", FAINT, "#ffffff"),
     "wall": Style("A-WALL", "wall, cut", fill="#7f7f7f"),
     "poche": Style("A-WALL", fill=INK),
+    "post": Style("A-COLS", fill=INK),
     "perhaps": Style("A-WALL-VRFY", "wall or furniture, not sure which", FAINT, "#ffffff"),
     "column": Style("A-COLS", "column, cut", fill="#7f7f7f"),
     "leaf": Style("A-DOOR", "open leaf of a door, as it stood", ink=FAINT),
