@@ -146,6 +146,17 @@ def test_one_side_of_a_column_is_no_wall():
     assert are_faces(FRONT) == [False, True]
 
 
+def test_sides_of_a_column_that_meet_are_no_walls_unless_one_meets_a_longer_wall():
+    points = returns(box(2.8, 1.8, 3.2, 2.2))
+    seen = rays(*[(sensor, points) for sensor in SENSORS])
+    sizes = {"furniture_height_m": 2.1, "max_width_m": 0.6, "unpaired_m": 0.1}
+    # from the south-east corner to the north: with its normal to the east
+    side = wall((3.2, 2.2), (1, 0), 0.4)
+    assert find_column_faces([LONG, FRONT, side], [], seen, **sizes) == [False, True, True]
+    beside = wall((6, 2.25), (0, -1), 2.8)
+    assert find_column_faces([LONG, FRONT, side, beside], [], seen, **sizes) == [False] * 4
+
+
 def test_a_short_wall_without_a_column_stays():
     assert are_faces(FRONT, np.arange(0.1, 2.0, 0.1)) == [False, False]
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from scipy.sparse.csgraph import connected_components
 from shapely import affinity
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
@@ -72,10 +73,10 @@ def find_column_faces(
     max_width_m: float,
     unpaired_m: float,
 ) -> list[bool]:
-    """Return which walls are single visible sides of columns.
+    """Return which walls are visible sides of columns.
 
-    Such is a single face as short as a column is wide, with an end at no other wall or pane, where
-    what stands around it is told to be a column.
+    Such are walls as short as a column is wide where none of those that hang together ends at a
+    longer wall or a pane, and what stands around one is told to be a column.
 
     Parameters
     ----------
@@ -85,12 +86,15 @@ def find_column_faces(
     unpaired_m : float
         How thick a wall is taken for of which one side is known.
     """
-    strips = wall_ground.wall_strips([*walls, *panes], unpaired_m)
+    strips = np.array(wall_ground.wall_strips([*walls, *panes], unpaired_m), object)
+    is_short = np.array(
+        [not wall.openings and wall.length_m <= max_width_m for wall in walls]
+        + [False] * len(panes),
+        bool,
+    )
+    others = overlays.unite_areas([*strips[~is_short]])
 
-    def is_side(number: int, wall: PlanWall) -> bool:
-        others = overlays.unite_areas([*strips[:number], *strips[number + 1 :]])
-        if (shapely.distance(shapely.points(wall.ends), others) <= END_M).any():
-            return False
+    def is_side(wall: PlanWall) -> bool:
         around = overlays.subtract_areas(
             _ground_around(wall, max_width_m), overlays.buffer_shapes(others, FACE_M)
         )
@@ -101,13 +105,15 @@ def find_column_faces(
         return _tell(piece, rays, others, furniture_height_m, max_width_m).kind == COLUMN
 
     # few walls are as short: only of these is looked at what is around them
-    return [
-        not wall.right
-        and not wall.openings
-        and wall.length_m <= max_width_m
-        and is_side(number, wall)
-        for number, wall in enumerate(walls)
-    ]
+    rows = np.flatnonzero(is_short)
+    touching = shapely.distance(strips[rows][:, None], strips[rows]) <= END_M
+    _, group = connected_components(touching, directed=False)
+    meets = shapely.distance(strips[rows], others) <= END_M
+    is_free = ~np.isin(group, group[meets])
+    sides = [row for row in rows[is_free].tolist() if is_side(walls[row])]
+    found = set(group[np.isin(rows, sides)].tolist())
+    columns = set(rows[np.isin(group, [*found])].tolist())
+    return [row in columns for row in range(len(walls))]
 
 
 def _ground_around(wall: PlanWall, depth_m: float) -> Polygon:
