@@ -118,6 +118,7 @@ def test_types_are_those_of_the_catalogue_with_the_deviation_beside_them():
     assert (leaf["MeasuredWidth"], leaf["WidthDeviation"]) == pytest.approx((0.88, 0.02))
     outer = elements(model, "IfcWall")["1"]
     assert psets(outer)["Scanplan_Nominal"]["ThicknessFrom"] == "assumed"
+    assert psets(outer)["Scanplan_Nominal"]["PerhapsFurniture"] is False
     assert psets(outer)["Pset_WallCommon"]["IsExternal"] is True
     assert psets(outer)["Scanplan_Evidence"]["ThicknessMeasured"] is False
 

@@ -378,13 +378,14 @@ EVIDENCE = Schema(
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 PRESENTATION = Schema(
     "presentation",
-    1,
+    2,
     {
         "wall": "int32",
         **_CENTRELINE,
         "thickness_m": "float64",
         "thickness_from": "string",
         **dict.fromkeys(("moved_m", "turned_deg", "thickness_changed_m"), "float64"),
+        "perhaps": "bool",
     },
     ("wall",),
 )
@@ -393,7 +394,8 @@ PRESENTATION = Schema(
 `thickness_from` is measured, assumed, or reveals (as deep as those of its openings); lines are in
 the middle of walls. A curved wall stays as it was measured: seen from one side it has no thickness
 (NaN), and its line is that of its face.
-`moved_m` is the greatest distance that a side was moved by at an end.
+`moved_m` is the greatest distance that a side was moved by at an end. `perhaps`: it may be
+furniture, and is drawn as an outline.
 """
 ELEMENT_IDS = Schema(
     "element_ids",

@@ -163,6 +163,7 @@ def _list_changes(storey: StoreyPlan, row: int) -> dict[str, tuple[str, str | fl
         "ThicknessDeviation": ("IfcLengthMeasure", changed_m),
         "Displacement": ("IfcLengthMeasure", float(columns["moved_m"][row])),
         "Rotation": ("IfcPlaneAngleMeasure", float(np.radians(columns["turned_deg"][row]))),
+        "PerhapsFurniture": ("IfcBoolean", bool(columns["perhaps"][row])),
     }
 
 
