@@ -92,6 +92,12 @@ def test_lengths_end_at_surfaces_that_were_measured():
     assert not any(text.startswith("~") for text in lengths)
 
 
+def test_chains_run_along_open_rooms_as_along_closed_ones():
+    opened = floorplan_making.rooms() | {"closed": np.array([True, False])}
+    closed, with_open = (composed(**tables).dimensions for tables in ({}, {"rooms": opened}))
+    np.testing.assert_allclose([d.ends_m for d in with_open], [d.ends_m for d in closed])
+
+
 def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     rows = [
         ((0, 0, 4, 0), -1, "glass", 0.0, 2.5, 0, -1),

@@ -230,11 +230,10 @@ def _dimension(
 ) -> list[Dimension]:
     """Return the chains along the facades of the building, off all that is drawn.
 
-    That is walls, openings and the rooms that these close; surfaces where there is no wall.
+    That is walls, openings and rooms; surfaces where there is neither.
     """
     plan, symbols = shown.plan, shown.symbols
-    rooms = plan.areas[plan.rooms["closed"].astype(bool)]
-    built = overlays.unite_areas([shown.built, *rooms])
+    built = overlays.unite_areas([shown.built, *plan.areas])
     if built.is_empty:
         lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
         drawn = page.place_shape(overlays.unite_lines(lines)).envelope

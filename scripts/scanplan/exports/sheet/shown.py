@@ -30,7 +30,7 @@ class Shown:
     uncertain : shapely geometry
         Lengths that end there are about so long.
     built : shapely geometry
-        What chains of dimensions run along, beside rooms that are closed.
+        What chains of dimensions run along, beside rooms.
     spans_m : (m, 2, 2) float
         Of openings, where chains measure them.
     known : shapely geometry or None
