@@ -332,6 +332,21 @@ def test_what_lies_before_an_oblique_facade_is_measured():
     assert 3.0 in south
 
 
+def test_chains_end_at_faces_where_corners_stray_from_them():
+    """The west's upper corner is 12 mm off its face, the lower one of the step 9 mm."""
+    corners = [(0, 0), (4.009, 0), (4, 0.01), (4, 3), (0, 3), (-0.012, 2.998), (0, 2.99)]
+    west, east = shapely.Polygon(corners), shapely.box(4, 1, 7, 3)
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([west, east]),
+    )
+    sheet = composition.compose_sheet(drawn)
+    south = [d.ends_m[:, 0] for d in sheet.dimensions if d.line_m[:, 1].max() < -0.2]
+    expected_m = [[0, 4], [0, 7], [4, 7]]
+    np.testing.assert_allclose(sorted(x.tolist() for x in south), expected_m, atol=0.001)
+
+
 def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
     """The small room's north side was not seen, nor its east side north of 1.5 m."""
     north = ((4.1, 3, 7.1, 3), -1, "unseen", np.nan, np.nan, 1, -1)
