@@ -98,6 +98,17 @@ def test_chains_run_along_open_rooms_as_along_closed_ones():
     np.testing.assert_allclose([d.ends_m for d in with_open], [d.ends_m for d in closed])
 
 
+def test_doors_within_have_their_width_beside_them_and_no_doubt():
+    openings = floorplan_making.openings()
+    openings["verify"] = np.ones(3, bool)
+    (word,) = composed(openings=openings).words
+    assert (word.kind, word.text, word.element) == ("width", "0.90", "door-1")
+    # beside its wall, along it
+    assert 0.05 < abs(word.place[0] - 4.05) < 0.4 and 1.0 < word.place[1] < 1.9
+    openings["type"][1] = "glass"
+    assert composed(openings=openings).words == []
+
+
 def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     rows = [
         ((0, 0, 4, 0), -1, "glass", 0.0, 2.5, 0, -1),

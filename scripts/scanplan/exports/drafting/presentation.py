@@ -48,8 +48,8 @@ def compose_presentation(
 
     Walls are solid, also where their thickness is assumed, and outlines where it is not sure that
     they are walls; doors swing where a leaf was seen.
-    Rooms and openings alone are dimensioned, between surfaces that were measured; of furniture
-    what a person has named is drawn, and no doubts are.
+    Rooms and openings alone are dimensioned, between surfaces that were measured, with the widths
+    of doors within beside them; of furniture what a person has named is drawn, and no doubts are.
 
     Parameters
     ----------

@@ -23,6 +23,7 @@ from scanplan.plan.tolerances import END_M
 from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts
 
+_SIZED = ("door", "swing", "passage", "window")  # glass is as wide as its wall
 _LOOSE = ("furniture", "leaf")  # words may lie over these
 
 
@@ -125,16 +126,16 @@ def lay_out(
     stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
     on_paper = page.place_shape(shown.uncertain)
     drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
-    is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas[: len(plan.areas) * shown.is_dimensioned]
         for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
     ]
     labels: list[Word] = []
-    if shown.is_labelled:
-        labels += words.label_openings(page, symbols, is_stated, space)
     if shown.is_dimensioned:
+        sized = symbols if shown.is_labelled else _list_sized(symbols)
+        is_stated = _find_stated(sized, drawn)
+        labels += words.label_openings(page, sized, is_stated, space)
         labels += words.label_walls(page, plan, space)
     is_about = any(dimension.word.text.startswith("~") for dimension in [*drawn, *rooms])
     is_about |= not np.all(plan.rooms["closed"])
@@ -162,6 +163,11 @@ def lay_out(
         [item for item in beside if isinstance(item, Mark)],
         [item for item in beside if isinstance(item, Word)],
     )
+
+
+def _list_sized(symbols: list[Symbol]) -> list[Symbol]:
+    """Return the openings that are built to a width, without marks of doubt."""
+    return [replace(s, verify=False, facts={}) for s in symbols if s.kind in _SIZED]
 
 
 def _list_legend(shown: Shown, marks: list[Mark], *, is_about: bool) -> list[str]:

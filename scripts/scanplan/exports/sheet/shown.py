@@ -38,9 +38,9 @@ class Shown:
     beside : sequence of shapely geometries
         What else chains of dimensions keep off.
     is_labelled : bool
-        Whether widths of openings, heights of walls and doubts stand beside them.
+        Whether doubts stand beside elements, and widths beside openings of every kind.
     is_dimensioned : bool
-        Whether facades and rooms have dimensions.
+        Whether facades and rooms have dimensions, and openings that are in none.
     notes : sequence of str
         Lines of words that stand beside the legend.
     """
