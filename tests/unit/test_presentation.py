@@ -207,6 +207,15 @@ def test_the_overview_is_a_page_of_a4_without_dimensions():
     assert np.array_equal(many.rooms["room"], np.arange(400))
 
 
+def test_names_are_whole_in_the_overview():
+    name = "Besprechungsraum Nord"
+    rooms = floorplan_making.rooms() | {"name": np.array([name, ""], object)}
+    measured = floorplan_making.plan(rooms=rooms)
+    regular, _ = draft_plan(measured, SETTINGS)
+    page = compose_overview(measured, regular)
+    assert page is not None and name in [word.text for word in page.paper_words]
+
+
 def facing(line, side):
     """A wall of 6 m seen from its left or right alone."""
     left, right = (0, -1) if side == "left" else (-1, 0)

@@ -170,7 +170,7 @@ def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
     # 277 mm x 181 at 1:75: on A3 above 15 rows of tables 179 mm are left, above 9 of them 203
     low_m, high_m, blocks = np.zeros(2), np.array([20.8, 13.6]), [6, 8, 8, 15]
     page = paper.choose_page(low_m, high_m, 0.0, blocks)
-    assert (page.name, page.scale, page.rows, page.is_beside) == ("A3", 75, 9, True)
+    assert (page.name, page.scale, page.rows, page.n_beside) == ("A3", 75, 9, 1)
     _, y0, right, y1 = page.drawing_mm
     assert page.inner_mm[2] - right == pytest.approx(62)
     *below, beside = page.slots()
@@ -186,15 +186,34 @@ def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
     ]
     # a lower one is as large above them
     lower = paper.choose_page(low_m, np.array([20.8, 12.0]), 0.0, blocks)
-    assert (lower.name, lower.scale, lower.is_beside) == ("A3", 75, False)
+    assert (lower.name, lower.scale, lower.n_beside) == ("A3", 75, 0)
+
+
+@pytest.mark.parametrize(("side_m", "scale"), [(29.0, 250), (35.0, 300)])
+def test_two_columns_beside_a_square_plan_draw_it_larger_on_a4(side_m, scale):
+    # lying, less two columns and 10 mm around: 125 x 130; upright, less 37 rows: 160 x 106
+    blocks = [6, 7, 9, 31]
+    page = paper.choose_page(
+        np.zeros(2),
+        np.full(2, side_m),
+        0.0,
+        blocks,
+        names=("A4",),
+        scales=paper.ROUND_SCALES,
+        around_mm=Paper.BARE,
+    )
+    assert (page.scale, page.n_beside, page.rows) == (scale, 2, paper.TITLE_ROWS)
+    *_, (notes,), (rooms,) = page.place_tables(blocks)
+    assert rooms.x_mm - notes.x_mm == pytest.approx(Paper.COLUMN)
+    assert rooms.x_mm + Paper.COLUMN == pytest.approx(page.inner_mm[2])
 
 
 def test_no_column_stays_empty():
     # as wide as high: beside a column it fills an A3 better
     page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 0])
-    assert not page.is_beside
+    assert page.n_beside == 0
     page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 2])
-    assert page.is_beside
+    assert page.n_beside == 1
     *_, (rooms,) = page.place_tables([6, 8, 0, 2])
     assert rooms.x_mm > page.drawing_mm[2] and rooms.rows == 2
 

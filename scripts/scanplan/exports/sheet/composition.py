@@ -12,7 +12,7 @@ from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.labels import LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
-from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page
+from scanplan.exports.sheet.paper import SCALES, SIZES_MM, Page, choose_page
 from scanplan.exports.sheet.shown import Shown, show_measured
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
@@ -74,6 +74,7 @@ def lay_out(
     turn_deg: float | None = None,
     least_scale: int = 1,
     names: Sequence[str] = tuple(SIZES_MM),
+    scales: Sequence[int] = SCALES,
 ) -> Sheet:
     """Lay a drawing out on a sheet, with dimensions, words and tables.
 
@@ -86,8 +87,8 @@ def lay_out(
         sheet, the way in which it is drawn larger.
     least_scale : int
         Least denominator of its scale, as of the other sheets of a set.
-    names : sequence of str
-        Of the sheets that may be taken.
+    names, scales : sequences
+        Of the sheets that may be taken, see `paper.choose_page`.
 
     Raises
     ------
@@ -110,6 +111,7 @@ def lay_out(
             blocks,
             least_scale,
             names=names,
+            scales=scales,
             around_mm=around_mm,
         )
         for turn in turns_deg
@@ -149,7 +151,7 @@ def lay_out(
         *title.draw_scale_bar(page, bar[0], facts.north),
         *title.draw_legend(legend, legend_slots, page.locale),
         *title.draw_notes(shown.notes, note_slots, page.locale),
-        *title.draw_room_table(stamps, table_slots, page.locale),
+        *title.draw_room_table(stamps, table_slots, page.locale, is_brief=not shown.is_dimensioned),
     ]
     return Sheet(
         clean_text(plan.name),

@@ -45,7 +45,7 @@ def draw_frame(page: Page) -> Iterator[Mark]:
     yield Mark("frame", [_box(x0, y0, x1, y1)], True, "frame", "frame")
     _, level, right, _ = page.drawing_mm
     yield Mark("title", [straight(np.array([[x0, level], [x1, level]]))], element="strip")
-    if page.is_beside:
+    if page.n_beside:
         yield Mark("title", [straight(np.array([[right, level], [right, y1]]))], element="column")
 
 
@@ -214,15 +214,18 @@ def draw_notes(
 
 
 def draw_room_table(
-    stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale
+    stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale, *, is_brief: bool = False
 ) -> Iterator[Mark | Word]:
-    """Yield the table of rooms: number, name, area, perimeter, and height where any was seen."""
+    """Yield the table of rooms: number, name, area, perimeter, and height where any was seen.
+
+    A brief one ends with the areas, and has more room for names.
+    """
     of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
     heads = ["No.", "Room", f"Area{of_area}", f"Perim.{of_length}", f"Height{of_length}"]
     names = [locale.say(head) for head in heads]
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
-    if all(of_room[-1] == _UNSEEN for of_room in sizes):
-        names, sizes = names[:-1], [of_room[:-1] for of_room in sizes]
+    n_sizes = 1 if is_brief else 3 - all(of_room[-1] == _UNSEEN for of_room in sizes)
+    names, sizes = names[: 2 + n_sizes], [of_room[:n_sizes] for of_room in sizes]
     ends = _end_columns(names, [stamp.facts["NUMBER"] for stamp in stamps], sizes)
     name_mm = _name_width_mm(ends, sizes)
     yield from _heads(slots, names, ends)
