@@ -643,6 +643,26 @@ def test_a_long_value_of_the_title_block_is_written_on_two_lines():
     assert not any(word.text.endswith("…") for word in values.values())
 
 
+@pytest.mark.parametrize("author", ["", "A. Bee"])
+def test_two_lines_of_the_title_block_keep_off_its_rules(author):
+    version, surveyed = "scanplan, code 0123456789ab", "2026-02-17 to 2026-02-18, in two visits"
+    drawn = plan(doubted=Doubts(damage=("cut off",)))
+    facts = SheetFacts(version=version, surveyed=surveyed, author=author)
+    sheet = composition.compose_sheet(drawn, facts)
+    values = [word for word in sheet.paper_words if word.element.startswith("title:")]
+    assert {"title:SOFTWARE_2", "title:DATE_OF_SURVEY_2"} <= {word.element for word in values}
+    rules = [mark.paths[0][:, :2] for mark in sheet.paper_marks if mark.kind == "dimension"]
+    levels = np.array([rule[0, 1] for rule in rules if np.ptp(rule[:, 0]) == pytest.approx(180)])
+    y0 = sheet.page.inner_mm[1]
+    levels = np.append(levels, y0 + STYLES["frame"].width_mm / 2)
+    for word in values:
+        if word.size_mm == Letters.SMALL:
+            # the tails of letters hang a quarter of their height below the line
+            top, low = word.place[1] + 0.9, word.place[1] - 0.9 - 0.45
+            assert np.abs(levels - top).min() > 0.25 and np.abs(levels - low).min() > 0.25
+            assert not ((low < levels) & (levels < top)).any()
+
+
 @pytest.mark.parametrize(
     ("sigma_m", "name"), [(0.0005, "LOA50"), (0.003, "LOA30"), (0.02, "LOA20"), (0.1, "LOA10")]
 )
