@@ -18,6 +18,8 @@ from helpers.floorplan_making import bare, plan
 from scanplan.exports import drawing, svg
 from scanplan.exports.sheet import composition, lettering
 from scanplan.exports.sheet.facts import SheetFacts
+from scanplan.exports.sheet.locale import make_locale
+from scanplan.project.words_file import read_words
 from scanplan.stage import figure_files
 
 NAMESPACE = "{http://www.w3.org/2000/svg}"
@@ -189,7 +191,7 @@ def test_a_sheet_no_larger_than_a3_is_one_page_of_its_own_size():
 
 @pytest.mark.parametrize(
     ("size_mm", "page_mm", "n_pages"),
-    # pages show 410 x 287 mm and overlap by 5; the frame is 565 x 401 mm, and 812 x 575 mm
+    # pages show 410 x 284 mm or 287 x 407 and overlap by 5; frames are 565 x 401 mm and 812 x 575
     [((594.0, 420.0), (297, 420), 2), ((841.0, 594.0), (420, 297), 6)],
 )
 def test_a_large_sheet_goes_on_pages_of_a3_that_show_all_of_it_to_scale(size_mm, page_mm, n_pages):
@@ -214,3 +216,22 @@ def test_a_large_sheet_goes_on_pages_of_a3_that_show_all_of_it_to_scale(size_mm,
     assert windows_mm[0].bounds[3] >= size_mm[1] - 10
     drawn = {patch.get_gid() for tile in tiles for patch in tile.axes[0].patches}
     assert {patch.get_gid() for patch in drawing.draw_sheet(large).axes[0].patches} == drawn
+
+
+@pytest.mark.parametrize(
+    ("language", "said"),
+    [("", "page A1 of 1 x 2"), ("de", "Seite A1 von 1 x 2"), ("fr", "page A1 sur 1 x 2"),
+     ("es", "página A1 de 1 x 2")],
+)  # fmt: skip
+def test_a_page_of_a_large_sheet_says_which_it_is_where_printers_reach(language, said):
+    locale = make_locale("m", read_words(language) if language else None)
+    sheet = composition.compose_sheet(plan(), SheetFacts(locale=locale))
+    large = replace(sheet, page=replace(sheet.page, size_mm=(594.0, 420.0)))
+    tile, _ = drawing.draw_tiles(large)
+    (tag,) = tile.texts
+    assert tag.get_text() == f"office: {said}"
+    capitals_mm = tag.get_fontsize() / lettering.POINTS_PER_MM / lettering.font_size_mm(1.0)
+    assert capitals_mm == pytest.approx(1.8)
+    # above what printers leave white, below the part of the sheet
+    y_mm = tag.get_position()[1] * 420
+    assert y_mm == pytest.approx(5) and y_mm + 1.8 < tile.axes[0].get_position().y0 * 420

@@ -95,6 +95,23 @@ def test_lengths_end_at_surfaces_that_were_measured():
     assert not any(text.startswith("~") for text in lengths)
 
 
+def test_chains_run_along_open_rooms_as_along_closed_ones():
+    opened = floorplan_making.rooms() | {"closed": np.array([True, False])}
+    closed, with_open = (composed(**tables).dimensions for tables in ({}, {"rooms": opened}))
+    np.testing.assert_allclose([d.ends_m for d in with_open], [d.ends_m for d in closed])
+
+
+def test_doors_within_have_their_width_beside_them_and_no_doubt():
+    openings = floorplan_making.openings()
+    openings["verify"] = np.ones(3, bool)
+    (word,) = composed(openings=openings).words
+    assert (word.kind, word.text, word.element) == ("width", "0.90", "door-1")
+    # beside its wall, along it
+    assert 0.05 < abs(word.place[0] - 4.05) < 0.4 and 1.0 < word.place[1] < 1.9
+    openings["type"][1] = "glass"
+    assert composed(openings=openings).words == []
+
+
 def test_panes_in_no_wall_are_drawn_where_they_bound_a_room():
     rows = [
         ((0, 0, 4, 0), -1, "glass", 0.0, 2.5, 0, -1),
@@ -191,6 +208,15 @@ def test_the_overview_is_a_page_of_a4_without_dimensions():
     many, _ = draft_plan(floorplan_making.plan(rooms=floorplan_making.rooms(tiles)), SETTINGS)
     assert compose_overview(measured, many) is None
     assert np.array_equal(many.rooms["room"], np.arange(400))
+
+
+def test_names_are_whole_in_the_overview():
+    name = "Besprechungsraum Nord"
+    rooms = floorplan_making.rooms() | {"name": np.array([name, ""], object)}
+    measured = floorplan_making.plan(rooms=rooms)
+    regular, _ = draft_plan(measured, SETTINGS)
+    page = compose_overview(measured, regular)
+    assert page is not None and name in [word.text for word in page.paper_words]
 
 
 def facing(line, side):

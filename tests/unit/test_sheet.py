@@ -170,7 +170,7 @@ def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
     # 277 mm x 181 at 1:75: on A3 above 15 rows of tables 179 mm are left, above 9 of them 203
     low_m, high_m, blocks = np.zeros(2), np.array([20.8, 13.6]), [6, 8, 8, 15]
     page = paper.choose_page(low_m, high_m, 0.0, blocks)
-    assert (page.name, page.scale, page.rows, page.is_beside) == ("A3", 75, 9, True)
+    assert (page.name, page.scale, page.rows, page.n_beside) == ("A3", 75, 9, 1)
     _, y0, right, y1 = page.drawing_mm
     assert page.inner_mm[2] - right == pytest.approx(62)
     *below, beside = page.slots()
@@ -186,15 +186,34 @@ def test_tables_go_beside_a_plan_that_is_drawn_larger_so():
     ]
     # a lower one is as large above them
     lower = paper.choose_page(low_m, np.array([20.8, 12.0]), 0.0, blocks)
-    assert (lower.name, lower.scale, lower.is_beside) == ("A3", 75, False)
+    assert (lower.name, lower.scale, lower.n_beside) == ("A3", 75, 0)
+
+
+@pytest.mark.parametrize(("side_m", "scale"), [(29.0, 250), (35.0, 300)])
+def test_two_columns_beside_a_square_plan_draw_it_larger_on_a4(side_m, scale):
+    # lying, less two columns and 10 mm around: 125 x 130; upright, less 37 rows: 160 x 106
+    blocks = [6, 7, 9, 31]
+    page = paper.choose_page(
+        np.zeros(2),
+        np.full(2, side_m),
+        0.0,
+        blocks,
+        names=("A4",),
+        scales=paper.ROUND_SCALES,
+        around_mm=Paper.BARE,
+    )
+    assert (page.scale, page.n_beside, page.rows) == (scale, 2, paper.TITLE_ROWS)
+    *_, (notes,), (rooms,) = page.place_tables(blocks)
+    assert rooms.x_mm - notes.x_mm == pytest.approx(Paper.COLUMN)
+    assert rooms.x_mm + Paper.COLUMN == pytest.approx(page.inner_mm[2])
 
 
 def test_no_column_stays_empty():
     # as wide as high: beside a column it fills an A3 better
     page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 0])
-    assert not page.is_beside
+    assert page.n_beside == 0
     page = paper.choose_page(np.zeros(2), np.array([36.0, 35.0]), 0.0, [6, 8, 0, 2])
-    assert page.is_beside
+    assert page.n_beside == 1
     *_, (rooms,) = page.place_tables([6, 8, 0, 2])
     assert rooms.x_mm > page.drawing_mm[2] and rooms.rows == 2
 
@@ -330,6 +349,21 @@ def test_what_lies_before_an_oblique_facade_is_measured():
     sheet = composition.compose_sheet(drawn, turn_deg=0.0)
     south = [float(d.word.text) for d in sheet.dimensions if d.line_m[:, 1].max() < -0.01]
     assert 3.0 in south
+
+
+def test_chains_end_at_faces_where_corners_stray_from_them():
+    """The west's upper corner is 12 mm off its face, the lower one of the step 9 mm."""
+    corners = [(0, 0), (4.009, 0), (4, 0.01), (4, 3), (0, 3), (-0.012, 2.998), (0, 2.99)]
+    west, east = shapely.Polygon(corners), shapely.box(4, 1, 7, 3)
+    drawn = plan(
+        walls=floorplan_making.walls([]),
+        openings=floorplan_making.openings([]),
+        rooms=floorplan_making.rooms([west, east]),
+    )
+    sheet = composition.compose_sheet(drawn)
+    south = [d.ends_m[:, 0] for d in sheet.dimensions if d.line_m[:, 1].max() < -0.2]
+    expected_m = [[0, 4], [0, 7], [4, 7]]
+    np.testing.assert_allclose(sorted(x.tolist() for x in south), expected_m, atol=0.001)
 
 
 def test_a_length_to_an_outline_that_was_not_seen_is_about_so_long():
@@ -607,6 +641,26 @@ def test_a_long_value_of_the_title_block_is_written_on_two_lines():
     assert " ".join(word.text for word in software) == version
     assert software[0].place[1] > software[1].place[1]
     assert not any(word.text.endswith("…") for word in values.values())
+
+
+@pytest.mark.parametrize("author", ["", "A. Bee"])
+def test_two_lines_of_the_title_block_keep_off_its_rules(author):
+    version, surveyed = "scanplan, code 0123456789ab", "2026-02-17 to 2026-02-18, in two visits"
+    drawn = plan(doubted=Doubts(damage=("cut off",)))
+    facts = SheetFacts(version=version, surveyed=surveyed, author=author)
+    sheet = composition.compose_sheet(drawn, facts)
+    values = [word for word in sheet.paper_words if word.element.startswith("title:")]
+    assert {"title:SOFTWARE_2", "title:DATE_OF_SURVEY_2"} <= {word.element for word in values}
+    rules = [mark.paths[0][:, :2] for mark in sheet.paper_marks if mark.kind == "dimension"]
+    levels = np.array([rule[0, 1] for rule in rules if np.ptp(rule[:, 0]) == pytest.approx(180)])
+    y0 = sheet.page.inner_mm[1]
+    levels = np.append(levels, y0 + STYLES["frame"].width_mm / 2)
+    for word in values:
+        if word.size_mm == Letters.SMALL:
+            # the tails of letters hang a quarter of their height below the line
+            top, low = word.place[1] + 0.9, word.place[1] - 0.9 - 0.45
+            assert np.abs(levels - top).min() > 0.25 and np.abs(levels - low).min() > 0.25
+            assert not ((low < levels) & (levels < top)).any()
 
 
 @pytest.mark.parametrize(

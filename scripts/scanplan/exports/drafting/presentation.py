@@ -18,7 +18,7 @@ from scanplan.exports.sheet.lettering import clean_text, wrap_lines
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Symbol
 from scanplan.exports.sheet.openings import list_symbols
-from scanplan.exports.sheet.paper import CrowdedError
+from scanplan.exports.sheet.paper import ROUND_SCALES, CrowdedError
 from scanplan.exports.sheet.shown import Shown
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.symbols import choose_block
@@ -48,8 +48,8 @@ def compose_presentation(
 
     Walls are solid, also where their thickness is assumed, and outlines where it is not sure that
     they are walls; doors swing where a leaf was seen.
-    Rooms and openings alone are dimensioned, between surfaces that were measured; of furniture
-    what a person has named is drawn, and no doubts are.
+    Rooms and openings alone are dimensioned, between surfaces that were measured, with the widths
+    of doors within beside them; of furniture what a person has named is drawn, and no doubts are.
 
     Parameters
     ----------
@@ -76,10 +76,9 @@ def compose_overview(
     """
     stated = replace(facts or SheetFacts(), drawing="Overview, without dimensions", number=2, of=2)
     shown = _show_regular(measured, regular, _list_totals(regular, stated.locale))
+    bare = replace(shown, is_dimensioned=False)
     try:
-        return lay_out(
-            replace(shown, is_dimensioned=False), stated, turn_deg=turn_deg, names=("A4",)
-        )
+        return lay_out(bare, stated, turn_deg=turn_deg, names=("A4",), scales=ROUND_SCALES)
     except CrowdedError:
         return None
 

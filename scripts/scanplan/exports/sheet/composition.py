@@ -12,7 +12,7 @@ from scanplan.exports.sheet.facts import SheetFacts
 from scanplan.exports.sheet.labels import LabelSpace
 from scanplan.exports.sheet.lettering import clean_text, rotation
 from scanplan.exports.sheet.marks import Dimension, Mark, Stamp, Symbol, Word, flatten, straight
-from scanplan.exports.sheet.paper import SIZES_MM, Page, choose_page
+from scanplan.exports.sheet.paper import SCALES, SIZES_MM, Page, choose_page
 from scanplan.exports.sheet.shown import Shown, show_measured
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
@@ -23,6 +23,7 @@ from scanplan.plan.tolerances import END_M
 from scanplan.types import FloatArray
 from scanplan.validation.doubts import list_doubts
 
+_SIZED = ("door", "swing", "passage", "window")  # glass is as wide as its wall
 _LOOSE = ("furniture", "leaf")  # words may lie over these
 
 
@@ -73,6 +74,7 @@ def lay_out(
     turn_deg: float | None = None,
     least_scale: int = 1,
     names: Sequence[str] = tuple(SIZES_MM),
+    scales: Sequence[int] = SCALES,
 ) -> Sheet:
     """Lay a drawing out on a sheet, with dimensions, words and tables.
 
@@ -85,8 +87,8 @@ def lay_out(
         sheet, the way in which it is drawn larger.
     least_scale : int
         Least denominator of its scale, as of the other sheets of a set.
-    names : sequence of str
-        Of the sheets that may be taken.
+    names, scales : sequences
+        Of the sheets that may be taken, see `paper.choose_page`.
 
     Raises
     ------
@@ -109,6 +111,7 @@ def lay_out(
             blocks,
             least_scale,
             names=names,
+            scales=scales,
             around_mm=around_mm,
         )
         for turn in turns_deg
@@ -125,16 +128,16 @@ def lay_out(
     stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
     on_paper = page.place_shape(shown.uncertain)
     drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
-    is_stated = _find_stated(symbols, drawn)
     rooms = [
         dimension
         for area in plan.areas[: len(plan.areas) * shown.is_dimensioned]
         for dimension in dimensions.dimension_room(page, page.place_shape(area), on_paper, space)
     ]
     labels: list[Word] = []
-    if shown.is_labelled:
-        labels += words.label_openings(page, symbols, is_stated, space)
     if shown.is_dimensioned:
+        sized = symbols if shown.is_labelled else _list_sized(symbols)
+        is_stated = _find_stated(sized, drawn)
+        labels += words.label_openings(page, sized, is_stated, space)
         labels += words.label_walls(page, plan, space)
     is_about = any(dimension.word.text.startswith("~") for dimension in [*drawn, *rooms])
     is_about |= not np.all(plan.rooms["closed"])
@@ -148,7 +151,7 @@ def lay_out(
         *title.draw_scale_bar(page, bar[0], facts.north),
         *title.draw_legend(legend, legend_slots, page.locale),
         *title.draw_notes(shown.notes, note_slots, page.locale),
-        *title.draw_room_table(stamps, table_slots, page.locale),
+        *title.draw_room_table(stamps, table_slots, page.locale, is_brief=not shown.is_dimensioned),
     ]
     return Sheet(
         clean_text(plan.name),
@@ -162,6 +165,11 @@ def lay_out(
         [item for item in beside if isinstance(item, Mark)],
         [item for item in beside if isinstance(item, Word)],
     )
+
+
+def _list_sized(symbols: list[Symbol]) -> list[Symbol]:
+    """Return the openings that are built to a width, without marks of doubt."""
+    return [replace(s, verify=False, facts={}) for s in symbols if s.kind in _SIZED]
 
 
 def _list_legend(shown: Shown, marks: list[Mark], *, is_about: bool) -> list[str]:
@@ -230,11 +238,10 @@ def _dimension(
 ) -> list[Dimension]:
     """Return the chains along the facades of the building, off all that is drawn.
 
-    That is walls, openings and the rooms that these close; surfaces where there is no wall.
+    That is walls, openings and rooms; surfaces where there is neither.
     """
     plan, symbols = shown.plan, shown.symbols
-    rooms = plan.areas[plan.rooms["closed"].astype(bool)]
-    built = overlays.unite_areas([shown.built, *rooms])
+    built = overlays.unite_areas([shown.built, *plan.areas])
     if built.is_empty:
         lines = [shapely.LineString(path[:, :2]) for mark in marks for path in mark.paths]
         drawn = page.place_shape(overlays.unite_lines(lines)).envelope

@@ -15,7 +15,7 @@ from scanplan.exports.sheet.paper import Page
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.geometry import overlays
 from scanplan.plan.floorplan import line_shapes
-from scanplan.plan.tolerances import END_M
+from scanplan.plan.tolerances import END_M, NOISE_M
 from scanplan.types import Array, FloatArray
 
 _READ_ALONG = np.array([1.0, 0.1])  # an almost upright line is read from the right
@@ -100,10 +100,12 @@ def dimension_facades(
         turned = ground.turn(turn)
         x0, y0, x1, _ = turned.outline.bounds
         reach_mm = END_M * page.mm_per_m
-        facades = _find_facades(turned.outline, reach_mm)
-        stops = _chain_stops(facades, openings @ turn.T, reach_mm, (x0, x1))
-        about = _find_assumed_ends(turned.outline, turned.known, reach_mm)
         upright = _find_upright_edges(turned.outline)
+        ends = _settle(x0, upright, reach_mm), _settle(x1, upright, reach_mm)
+        facades = _find_facades(turned.outline, reach_mm)
+        stops = _chain_stops(facades, upright, openings @ turn.T, reach_mm, ends)
+        is_assumed = _find_assumed_ends(turned.outline, turned.known, reach_mm)
+        about = set(itertools.compress(ends, is_assumed))
         uncertain_strip = overlays.buffer_shapes(turned.uncertain, reach_mm)
         about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, reach_mm)}
         level = turned.reach.bounds[1]
@@ -111,16 +113,28 @@ def dimension_facades(
             level -= Paper.CHAIN
             yield from _draw_chain(page, stops, level, turn, space, about)
         if quarter in (0, 3):
-            whole = [(x0, y0), (x1, y0)]
+            whole = [(x, y0) for x in ends]
             yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
+
+
+def _settle(x: float, upright: Array, reach_mm: float) -> float:
+    """Return where the longest face is that a place (x) strays from by noise; it itself without.
+
+    Outlines have corners some millimetres off the faces of their walls.
+    """
+    west, _, east, _ = shapely.bounds(upright).T
+    nearest = np.clip(x, west, east)
+    is_near = np.abs(nearest - x) <= reach_mm * NOISE_M / END_M
+    lengths = np.where(is_near, shapely.length(upright), 0.0)
+    return float(nearest[lengths.argmax()]) if (lengths > reach_mm).any() else x
 
 
 def _find_assumed_ends(
     outline: BaseGeometry, known: BaseGeometry, reach_mm: float
-) -> frozenset[float]:
-    """Return those of a plan's ends (x, on turned paper) that lie beyond all that is known."""
-    ends = zip(outline.bounds[::2], known.bounds[::2], strict=True)
-    return frozenset(x for x, known_x in ends if not abs(x - known_x) < reach_mm / 10)
+) -> Iterator[bool]:
+    """Yield of a plan's ends whether they lie beyond all that is known, on turned paper."""
+    for x, known_x in zip(outline.bounds[::2], known.bounds[::2], strict=True):
+        yield not abs(x - known_x) < reach_mm / 10
 
 
 def _find_upright_edges(outline: BaseGeometry) -> Array:
@@ -190,7 +204,11 @@ def _cut_intervals(
 
 
 def _chain_stops(
-    facades: list[_Facade], openings: FloatArray, reach_mm: float, ends: tuple[float, float]
+    facades: list[_Facade],
+    upright: Array,
+    openings: FloatArray,
+    reach_mm: float,
+    ends: tuple[float, float],
 ) -> list[tuple[float, float]]:
     """Return the stops (x, y) of a chain: its ends, openings in facades, and the facades' ends.
 
@@ -210,7 +228,9 @@ def _chain_stops(
             if is_in_it and -reach_mm <= y - before.y <= 4 * reach_mm:
                 found += [(low, before.y0), (high, before.y1)]
     for facade in facades:
-        found += [(facade.x0, facade.y0), (facade.x1, facade.y1)]
+        for x, y in ((facade.x0, facade.y0), (facade.x1, facade.y1)):
+            sides = upright[shapely.dwithin(upright, shapely.Point(x, y), reach_mm)]
+            found.append((_settle(x, sides, reach_mm), y))
     stops: list[tuple[float, float]] = []
     for x, y in found:
         if all(abs(x - other) >= Paper.LEAST for other, _ in stops):
@@ -224,7 +244,7 @@ def _draw_chain(
     level: float,
     turn: FloatArray,
     space: LabelSpace,
-    about: frozenset[float],
+    about: set[float],
 ) -> Iterator[Dimension]:
     """Yield the dimensions of a chain, whose stops and level are on turned paper.
 

@@ -1,5 +1,6 @@
 """Sheets of paper: their sizes, the scale of a plan on one, and where things go on it."""
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -25,9 +26,13 @@ SIZES_MM = {
 _SMALL = ("A3", "A4")
 # ISO 5455, of buildings, and those that architects' rules have between them
 _USUAL = (50, 75, 100, 125, 150, 200, 250)
-_SCALES = (*_USUAL, *(m * 10**e for e in range(2, 5) for m in (5, 10, 20)), 500_000)
+SCALES = (*_USUAL, *(m * 10**e for e in range(2, 5) for m in (5, 10, 20)), 500_000)
+"""Of drawings, their denominators."""
+ROUND_SCALES = (*_USUAL, 300, 350, 400, *SCALES[len(_USUAL) :])
+"""Of pages that nobody measures on: between 1:250 and 1:500 a plan halves."""
 _READABLE = 200  # a room of 3 m is 15 mm wide: a name in the smallest letters goes into it
 _ENOUGH = 0.55  # of what lies above the tables: less looks lost, more is rare between two scales
+_MOST_BESIDE = 2  # columns of tables beside a plan: these are as high as it is wide on A4, lying
 TITLE_ROWS = 9  # of the title block
 
 
@@ -66,8 +71,8 @@ class Page:
         Left free around the plan: left, below, right, above.
     locale : Locale
         How it is written.
-    is_beside : bool
-        Whether tables stand in a column right of the plan, too.
+    n_beside : int
+        Columns of tables that stand right of the plan.
     """
 
     name: str
@@ -79,7 +84,7 @@ class Page:
     extent_m: FloatArray
     around_mm: tuple[float, float, float, float] = Paper.AROUND
     locale: Locale = ENGLISH
-    is_beside: bool = False
+    n_beside: int = 0
 
     @property
     def inner_mm(self) -> tuple[float, float, float, float]:
@@ -101,7 +106,7 @@ class Page:
     def drawing_mm(self) -> tuple[float, float, float, float]:
         """The part of the frame above tables and title block: as `inner_mm`."""
         x0, y0, x1, y1 = self.inner_mm
-        aside = (Paper.COLUMN + Paper.ROW / 2) * self.is_beside
+        aside = Paper.COLUMN * self.n_beside + Paper.ROW / 2 * (self.n_beside > 0)
         return x0, y0 + self.rows * Paper.ROW + Paper.ROW / 2, x1 - aside, y1
 
     @property
@@ -159,25 +164,31 @@ class Page:
         The title block is right.
         """
         yield from find_slots(self.inner_mm, self.rows)
-        if self.is_beside:
-            _, y0, x1, y1 = self.drawing_mm
-            # a row below the frame
-            high = int((y1 - y0) // Paper.ROW) - 1
-            yield Slot(x1 + Paper.ROW / 2, y0 + high * Paper.ROW, high)
+        _, y0, x1, y1 = self.drawing_mm
+        # a row below the frame
+        high = int((y1 - y0) // Paper.ROW) - 1
+        for column in range(self.n_beside):
+            left = x1 + Paper.ROW / 2 + column * Paper.COLUMN
+            yield Slot(left, y0 + high * Paper.ROW, high)
 
     def place_tables(self, blocks: Sequence[int]) -> list[list[Slot]] | None:
         """Return where the rows of each block go, see `fill_slots`.
 
         Scale bar and legend go below the plan; what follows goes beside it as a whole, where there
-        is a column that holds it.
+        are columns that hold it.
         """
         slots = [*self.slots()]
-        if self.is_beside:
-            below = fill_slots(iter(slots[:-1]), blocks[:2])
-            beside = fill_slots(iter(slots[-1:]), blocks[2:])
+        if self.n_beside:
+            below = fill_slots(iter(slots[: -self.n_beside]), blocks[:2])
+            beside = fill_slots(iter(slots[-self.n_beside :]), blocks[2:])
             if below is not None and beside is not None:
                 return [*below, *beside]
         return fill_slots(iter(slots), blocks)
+
+    def count_beside(self, places: Sequence[Sequence[Slot]]) -> int:
+        """Return in how many columns beside the plan something stands."""
+        level = self.drawing_mm[1]
+        return len({slot.x_mm for slot in itertools.chain(*places) if slot.y_mm > level})
 
 
 def find_slots(inner_mm: tuple[float, float, float, float], rows: int) -> Iterator[Slot]:
@@ -201,6 +212,7 @@ def choose_page(
     least_scale: int = 1,
     *,
     names: Sequence[str] = tuple(SIZES_MM),
+    scales: Sequence[int] = SCALES,
     around_mm: tuple[float, float, float, float] = Paper.AROUND,
 ) -> Page:
     """Choose the sheet and the scale for a plan.
@@ -222,6 +234,8 @@ def choose_page(
         Scales with a lesser denominator are not taken.
     names : sequence of str
         Of the sheets that may be taken, in the order of preference.
+    scales : sequence of int
+        That may be taken, the largest first.
     around_mm : (float, float, float, float)
         See `Page`.
 
@@ -232,7 +246,7 @@ def choose_page(
     """
     extent_m = np.asarray(high_m, float) - low_m
     middle_m = (np.asarray(high_m, float) + low_m) / 2
-    scales = [scale for scale in _SCALES if scale >= least_scale]
+    scales = [scale for scale in scales if scale >= least_scale]
     empty = Page("", (0.0, 0.0), 0, 0, turn_deg, middle_m, extent_m, around_mm)
     fitting = (_fit_sheet(replace(empty, name=n), scales, blocks) for n in names)
     pages = [page for page in fitting if page is not None]
@@ -274,9 +288,9 @@ def _fit_sheet(page: Page, scales: Sequence[int], blocks: list[int]) -> Page | N
 def _list_layouts(page: Page) -> Iterator[Page]:
     """Yield a sheet lying and upright, with tables below the plan alone, then beside it, too."""
     long, short = SIZES_MM[page.name]
-    for is_beside in (False, True):
+    for n_beside in range(_MOST_BESIDE + 1):
         for size_mm in ((long, short), (short, long)):
-            yield replace(page, size_mm=size_mm, is_beside=is_beside)
+            yield replace(page, size_mm=size_mm, n_beside=n_beside)
 
 
 def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
@@ -285,13 +299,13 @@ def _fill_page(page: Page, blocks: list[int], least: int = 1) -> Page | None:
     Or if nothing would stand beside the plan where there is a column for it. The first block, scale
     bar and axes, is whole; of a table that is broken, each part has so many rows at least.
     """
-    if page.is_beside and not any(blocks[2:]):
+    if page.n_beside and not any(blocks[2:]):
         return None
     most = int((page.size_mm[1] / 2) // Paper.ROW)
     for rows in range(TITLE_ROWS, most):
         filled = replace(page, rows=rows)
         places = filled.place_tables(blocks)
-        if places is None or len(places[0]) > 1:
+        if places is None or len(places[0]) > 1 or filled.count_beside(places) < page.n_beside:
             continue
         if all(_is_unbroken(parts, least) for parts in places):
             return filled

@@ -30,7 +30,7 @@ class Shown:
     uncertain : shapely geometry
         Lengths that end there are about so long.
     built : shapely geometry
-        What chains of dimensions run along, beside rooms that are closed.
+        What chains of dimensions run along, beside rooms.
     spans_m : (m, 2, 2) float
         Of openings, where chains measure them.
     known : shapely geometry or None
@@ -38,9 +38,9 @@ class Shown:
     beside : sequence of shapely geometries
         What else chains of dimensions keep off.
     is_labelled : bool
-        Whether widths of openings, heights of walls and doubts stand beside them.
+        Whether doubts stand beside elements, and widths beside openings of every kind.
     is_dimensioned : bool
-        Whether facades and rooms have dimensions.
+        Whether facades and rooms have dimensions, and openings that are in none.
     notes : sequence of str
         Lines of words that stand beside the legend.
     """

@@ -1,6 +1,7 @@
 """What stands on a sheet beside its plan: frame, title block, legend, table of rooms, scale bar."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,7 +31,7 @@ TITLE_TAG = "title:"
 """What the elements of a title block's values begin with."""
 Value = tuple[str, str, int]
 """Of a title block: its head, what it says, and how many of three columns it is wide."""
-_HEIGHT_MM = 5.0  # of a row of the title block: two lines, and a little
+_LEADING = 1.4  # of lines of a value, in heights of their capitals
 # values that are names, in no language, or said already
 _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
 _NAMES += ("Earliest", "Latest", "Storey", "Author", "Organisation", "Corrected on site by")
@@ -45,7 +46,7 @@ def draw_frame(page: Page) -> Iterator[Mark]:
     yield Mark("frame", [_box(x0, y0, x1, y1)], True, "frame", "frame")
     _, level, right, _ = page.drawing_mm
     yield Mark("title", [straight(np.array([[x0, level], [x1, level]]))], element="strip")
-    if page.is_beside:
+    if page.n_beside:
         yield Mark("title", [straight(np.array([[right, level], [right, y1]]))], element="column")
 
 
@@ -86,30 +87,69 @@ def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator
     yield from draw_block(page, rows)
 
 
+@dataclass(frozen=True)
+class _Cell:
+    """A value of a title block, with its head as it is said, both from some x on, on paper."""
+
+    head: str
+    said: str
+    x0: float
+    value_x: float
+    lines: list[str]
+    size_mm: float
+
+    @property
+    def high_mm(self) -> float:
+        """Of its lines."""
+        return (1 + _LEADING * (len(self.lines) - 1)) * self.size_mm
+
+
 def draw_block(page: Page, rows: Sequence[Sequence[Value]]) -> Iterator[Mark | Word]:
-    """Yield a title block of rows of values, each with its head, over so many columns of three."""
+    """Yield a title block of rows of values, each with its head, over so many columns of three.
+
+    Rows are as high as their lines, with as much around them in each.
+    """
     _, y0, x1, _ = page.inner_mm
     x0 = x1 - 3 * Paper.COLUMN
     y1 = y0 + TITLE_ROWS * Paper.ROW
-    # the last row, on the frame's thick line, is the highest
-    height = min(_HEIGHT_MM, (y1 - y0 - _HEIGHT_MM) / max(len(rows) - 1, 1))
-    levels = [*np.arange(len(rows)) * -height + y1, y0]
+    # the last row is off half of the frame's line
+    bottom = y0 + STYLES["frame"].width_mm / 2
+    cells = [[*_fit_cells(row, x0, page.locale)] for row in rows]
+    high_mm = np.array([max(cell.high_mm for cell in row) for row in cells])
+    high_mm += (y1 - bottom - high_mm.sum()) / len(rows)
+    levels = y1 - np.append(0.0, np.cumsum(high_mm))
     yield Mark("title", [_box(x0, y0, x1, y1)], True, "title-block", "title block")
-    for number, row in enumerate(rows):
-        top, bottom = levels[number : number + 2]
+    for row, top, low in zip(cells, levels, levels[1:], strict=False):
         yield _rule(x0, top, x1, top)
-        x = x0
-        for head, value, columns in row:
-            width = columns * Paper.COLUMN
-            if x > x0:
-                yield _rule(x, top, x, bottom)
-            said = page.locale.say(head)
-            yield _word("note", said, x + Paper.GAP, (top + bottom) / 2, Letters.SMALL)
-            head_mm = measure_width_mm(said, Letters.SMALL) + 3 * Paper.GAP
-            ends = (x + max(_HEAD_MM, head_mm), x + width - Paper.GAP)
-            text = clean_text(value if head in _NAMES else page.locale.say(value))
-            yield from _draw_value(head, text, ends, (top + bottom) / 2)
-            x += width
+        for cell in row:
+            if cell.x0 > x0:
+                yield _rule(cell.x0, top, cell.x0, low)
+            yield from _draw_cell(cell, (top + low) / 2)
+
+
+def _fit_cells(row: Sequence[Value], x: float, locale: Locale) -> Iterator[_Cell]:
+    """Yield the cells of a row from x on: a value goes on two lines where one does not hold it."""
+    for head, value, columns in row:
+        end = x + columns * Paper.COLUMN
+        said = locale.say(head)
+        head_mm = measure_width_mm(said, Letters.SMALL) + 3 * Paper.GAP
+        value_x = x + max(_HEAD_MM, head_mm)
+        text = clean_text(value if head in _NAMES else locale.say(value))
+        width = end - Paper.GAP - value_x
+        is_large = head == "Project" and shorten_text(text, Letters.LARGE, width) == text
+        size = Letters.LARGE if is_large else Letters.SMALL
+        yield _Cell(head, said, x, value_x, wrap_text(text, size, width), size)
+        x = end
+
+
+def _draw_cell(cell: _Cell, y: float) -> Iterator[Word]:
+    """Yield the head and the value of a cell in the middle of whose row y is."""
+    yield _word("note", cell.said, cell.x0 + Paper.GAP, y, Letters.SMALL)
+    tag = TITLE_TAG + cell.head.upper().replace(" ", "_")
+    for number, text in enumerate(cell.lines):
+        level = y + ((len(cell.lines) - 1) / 2 - number) * _LEADING * cell.size_mm
+        place, element = np.array([cell.value_x, level]), f"{tag}_{number + 1}" if number else tag
+        yield Word("title", text, place, cell.size_mm, align=0.0, element=element)
 
 
 def _list_people(plan: FloorPlan, facts: SheetFacts) -> list[list[Value]]:
@@ -154,19 +194,6 @@ def _state_verdict(plan: FloorPlan, locale: Locale) -> str:
 
 def _is_cut(text: str, width_mm: float) -> bool:
     return wrap_text(text, Letters.SMALL, width_mm)[-1].endswith("…")
-
-
-def _draw_value(head: str, value: str, ends: tuple[float, float], y: float) -> Iterator[Word]:
-    """Yield a value of the title block between x and x, on two lines where one does not hold it."""
-    x0, x1 = ends
-    is_large = head == "Project" and shorten_text(value, Letters.LARGE, x1 - x0) == value
-    size = Letters.LARGE if is_large else Letters.SMALL
-    lines = wrap_text(value, size, x1 - x0)
-    tag = TITLE_TAG + head.upper().replace(" ", "_")
-    for number, text in enumerate(lines):
-        level = y + ((len(lines) - 1) / 2 - number) * 1.4 * size
-        element = f"{tag}_{number + 1}" if number else tag
-        yield Word("title", text, np.array([x0, level]), size, align=0.0, element=element)
 
 
 def list_legend(marks: Sequence[Mark], kinds: set[str]) -> list[str]:
@@ -214,15 +241,18 @@ def draw_notes(
 
 
 def draw_room_table(
-    stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale
+    stamps: Sequence[Stamp], slots: Sequence[Slot], locale: Locale, *, is_brief: bool = False
 ) -> Iterator[Mark | Word]:
-    """Yield the table of rooms: number, name, area, perimeter, and height where any was seen."""
+    """Yield the table of rooms: number, name, area, perimeter, and height where any was seen.
+
+    A brief one ends with the areas, and has more room for names.
+    """
     of_area, of_length = f" {locale.area_unit}", f" {locale.unit}"
     heads = ["No.", "Room", f"Area{of_area}", f"Perim.{of_length}", f"Height{of_length}"]
     names = [locale.say(head) for head in heads]
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
-    if all(of_room[-1] == _UNSEEN for of_room in sizes):
-        names, sizes = names[:-1], [of_room[:-1] for of_room in sizes]
+    n_sizes = 1 if is_brief else 3 - all(of_room[-1] == _UNSEEN for of_room in sizes)
+    names, sizes = names[: 2 + n_sizes], [of_room[:n_sizes] for of_room in sizes]
     ends = _end_columns(names, [stamp.facts["NUMBER"] for stamp in stamps], sizes)
     name_mm = _name_width_mm(ends, sizes)
     yield from _heads(slots, names, ends)
