@@ -183,7 +183,9 @@ def _fit_outline(xy_m: FloatArray, max_width_m: float, solid: BaseGeometry) -> P
     if circle is not None and _mean_square(circle.residual_m) < _mean_square(off_m):
         radius_m = float(circle.radii_m[0])
         is_column = END_M <= 2 * radius_m <= max_width_m
-        return shapely.Point(circle.centre_m).buffer(radius_m, _QUARTER) if is_column else None
+        centre = shapely.Point(circle.centre_m)
+        drawn = overlays.buffer_shapes(centre, radius_m, quad_segs=_QUARTER)
+        return drawn if is_column else None
     corners_m = shapely.get_coordinates(rectangle)
     sides_m = np.hypot(*(corners_m[1:3] - corners_m[:2]).T)
     is_column = sides_m.max() <= max_width_m and sides_m.min() >= END_M
