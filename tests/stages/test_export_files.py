@@ -90,6 +90,25 @@ def test_names_of_rooms_that_nobody_named_are_in_the_language_in_all_files(plan,
     assert names == [{"de": "Room"}, {"de": "Raum 1"}]
 
 
+def test_ways_are_as_wide_as_the_regular_drawing_has_them(plan, tmp_path):
+    """The door between the rooms was seen 2 cm too narrow: it is drawn, and passed, as of 0.9 m."""
+    openings = floorplan_making.openings()
+    openings["y1_m"][1] -= 0.02
+    openings["width_m"][1] = 0.88
+    tables.write_table(plan["openings"], schemas.OPENINGS, openings)
+    made = exported(plan, tmp_path, ["json", "openings_csv", "editable"])
+    content = json.loads(made["json"].read_text())
+    assert [(way["width_m"], way["nominal_width_m"]) for way in content["ways"]] == [
+        *((1.0, 1.0), (0.88, 0.9))
+    ]
+    assert content["wheelchair"]["groups"] == [[0, 1]] and content["wheelchair"]["to_tape"] == [1]
+    door = ifcopenshell.open(made["editable"]).by_guid(content["ways"][1]["global_id"])
+    assert door.OverallWidth == pytest.approx(0.9)
+    # drawn as measured
+    made = exported(plan, tmp_path, ["openings_csv"], max_change_m=0.0)
+    assert pd.read_csv(made["openings_csv"])["nominal_width_m"].isna()[1]
+
+
 def exported_model(plan, folder):
     return ifcopenshell.open(exported(plan, folder, ["ifc"])["ifc"])
 

@@ -24,23 +24,27 @@ Rows = dict[str, list[Any]]
 """Values by column, None where not known."""
 
 
-def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
+def tabulate_elements(
+    plan: FloorPlan, ids: ElementIds, nominal_m: Mapping[int, float] | None = None
+) -> dict[str, Rows]:
     """Return walls, openings and rooms as rows.
 
     Parameters
     ----------
     ids : dict of str to sequence of str
         See `element_ids.ElementIds`.
+    nominal_m : dict of int to float, optional
+        Widths of the catalogue, see `nominal_widths.find_nominal_widths`.
 
     Returns
     -------
     dict of str to dict of str to list
         By `walls`, `openings` and `rooms`: the columns of the plan's tables but for geometry, with
-        `global_id` as in the building model; walls also `height_m` and `external`, openings and
-        rooms the names of rooms; rooms `height_m`, where the ceiling was seen,
-        `least_height_m`, as high as anything was, `net_area_m2`, less what columns stand on, and
-        how many doors and passages they have, and how wide the widest is. Numbers are Python's;
-        None where not known, or for no wall or room.
+        `global_id` as in the building model; walls also `height_m` and `external`, openings
+        `nominal_width_m` and, as rooms, the names of rooms; rooms `height_m`, where the ceiling was
+        seen, `least_height_m`, as high as anything was, `net_area_m2`, less what columns stand on,
+        and how many doors and passages they have, and how wide the widest is. Numbers are
+        Python's; None where not known, or for no wall or room.
     """
     names = dict(zip(plan.rooms["room"].tolist(), plan.room_labels, strict=True))
     walls = _plain(plan.walls, ids["wall"])
@@ -48,6 +52,7 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     walls["height_m"] = np.round(plan.heights_m, 4).tolist()
     walls["external"] = envelope.find_external_walls(plan).tolist()
     openings = _plain(plan.openings, ids["opening"])
+    openings["nominal_width_m"] = [(nominal_m or {}).get(o) for o in openings["opening"]]
     for side in ("a", "b"):
         openings[f"room_{side}_name"] = [names.get(room) for room in openings[f"room_{side}"]]
     rooms = _plain(plan.rooms, ids["room"])
