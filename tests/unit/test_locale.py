@@ -52,7 +52,7 @@ def test_nothing_on_a_sheet_stays_english(language):
 @pytest.mark.parametrize("language", ["en", *LANGUAGES])
 def test_a_title_block_holds_place_and_people_in_every_language(language):
     locale = make_locale("ft" if language == "en" else "m", read_words(language))
-    measured = GeoReference("EPSG:25832", 0.0, 0.0, 0.0, 0.0234)
+    measured = GeoReference("EPSG:25832", 0.0, 0.0, 0.0, 0.0234, check_off_m=[("K1", 0.02)])
     site = Site("EPSG:25832", 512_999.999, 5_401_999.999, turn_deg=130.0041)
     facts = SheetFacts(
         locale=locale,
