@@ -257,7 +257,6 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
         attributes = {"PredefinedType": "DOOR" if of_doors else "WINDOW"}
         attributes |= _state_operation(operation) if of_doors else {"PartitioningType": operation}
         product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)
-        system, code = storey.find_code(_LISTED_AS.get(kind, "windows"), listed)
-        if code:
-            model.classify([product_type, *fillings], system, code)
+        if code := storey.find_code(_LISTED_AS.get(kind, "windows"), listed):
+            model.classify([product_type, *fillings], code)
         model.join("IfcRelDefinesByType", fillings, RelatingType=product_type)

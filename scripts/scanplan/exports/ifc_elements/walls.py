@@ -182,9 +182,8 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
         layers = model.new("IfcMaterialLayerSet", [layer], name)
         predefined = _STANDARD if model.is_editable else "NOTDEFINED"
         wall_type = model.root("IfcWallType", (name,), Name=name, PredefinedType=predefined)
-        system, code = storey.find_code("walls", listed)
-        if code:
-            model.classify([wall_type, *(walls[row] for row in rows)], system, code)
+        if code := storey.find_code("walls", listed):
+            model.classify([wall_type, *(walls[row] for row in rows)], code)
         model.join("IfcRelAssociatesMaterial", [wall_type], RelatingMaterial=layers)
         model.join("IfcRelDefinesByType", [walls[row] for row in rows], RelatingType=wall_type)
         for row in rows:
