@@ -31,6 +31,7 @@ from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.plan.survey_scale import find_factor
 from scanplan.project.catalogue_file import read_catalogue
 from scanplan.project.words_file import tag_language
+from scanplan.recordings.clocks import end_of_survey_ns
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
@@ -80,7 +81,7 @@ def export_files(
     locale = make_locale(settings["units"], words)
     drawn = replace(scale_floorplan(in_map), room_word=locale.say("Room"))
     registered = registered_scans.read_registered_scans(plan["registration"])
-    t_ns = int(registered.t_ns[-1])
+    t_ns = end_of_survey_ns(registered.t_ns)
     ids = _identify_elements(in_map, outputs["ids"], outputs["known"], source)
     site = find_site(drawn.georeference, settings["site"])
     origin = ModelOrigin(

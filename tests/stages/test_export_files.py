@@ -1,6 +1,8 @@
 """The plan's files for other programs hold one plan, and its elements keep their ids."""
 
 import json
+import sqlite3
+import zipfile
 from unittest.mock import Mock
 
 import ifcopenshell
@@ -33,7 +35,7 @@ TABLES = {
     "free": (schemas.FREE, floorplan_making.free),
 }
 FILES = export_formats.list_files(export_formats.FILES)
-LAST_S = 1_700_000_003
+LAST_S = 1_712_345_678
 
 
 def registration():
@@ -127,6 +129,22 @@ def test_independent_readers_find_the_same_plan_in_all_files(plan, tmp_path):
     assert len(trimesh.load_scene(files["glb"]).geometry) == 11
     written = tables.read_table(files["ids"], schemas.ELEMENT_IDS)
     assert written["global_id"][written["kind"] == "wall"].tolist() == ids
+
+
+def test_no_date_is_invented_where_the_clock_was_not_set(plan, tmp_path):
+    """It began at New Year, as computers without a battery do, and ended two hours later."""
+    registered, _ = registration()
+    new_year_s = 1_704_067_200
+    registered["t_ns"] = (new_year_s + np.array([5, 6, 7, 7200], np.int64)) * 10**9
+    tables.write_table(plan["registration"], schemas.REGISTRATION, registered)
+    made = exported(plan, tmp_path, ["ifc", "bcf", "gpkg"])
+    model = ifcopenshell.open(made["ifc"])
+    assert model.by_type("IfcOwnerHistory")[0].CreationDate == 0
+    assert model.header.file_name.time_stamp.startswith("1970-01-01")
+    with zipfile.ZipFile(made["bcf"]) as topics:
+        assert not any(b"2024" in topics.read(name) for name in topics.namelist())
+    about = sqlite3.connect(made["gpkg"]).execute("SELECT last_change FROM gpkg_contents")
+    assert {stamp[:10] for (stamp,) in about} == {"1970-01-01"}
 
 
 def test_a_mask_is_drawn_once_for_its_image_and_its_settings(plan, tmp_path, monkeypatch):

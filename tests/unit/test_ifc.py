@@ -431,6 +431,15 @@ def test_author_organisation_and_the_surveys_time_stand_in_it():
     assert faults(model) == []
 
 
+def test_names_keep_their_letters_in_the_header():
+    origin = ModelOrigin(author="Åsa \\ l'Ω", organisation="Géomètres SA")
+    text = ifc.format_ifc(plan(name="étage"), origin=origin)
+    assert text.isascii() and "?" not in text.partition("ENDSEC;")[0]
+    header = ifcopenshell.file.from_string(text).header.file_name
+    assert header.organization == ("Géomètres SA",)
+    assert (header.name, *header.author) == ("étage", "Åsa \\ l'Ω")
+
+
 def test_project_and_storey_are_named_as_they_are_stated():
     """Else by the survey, and as what was surveyed."""
     named = opened(plan(), origin=ModelOrigin(project="Town hall", storey="Ground floor"))

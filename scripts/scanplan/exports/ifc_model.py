@@ -316,10 +316,10 @@ class IfcModel:
         header = self.file.header
         view = _TRANSFER if self.is_editable else _REFERENCE
         header.file_description.description = (view,)
-        header.file_name.name = _plain(self.name)
+        header.file_name.name = self.name
         header.file_name.time_stamp = self._surveyed_at.strftime("%Y-%m-%dT%H:%M:%S")
-        header.file_name.author = (_plain(self.origin.author),)
-        header.file_name.organization = (_plain(self.origin.organisation),)
+        header.file_name.author = (self.origin.author,)
+        header.file_name.organization = (self.origin.organisation,)
         header.file_name.preprocessor_version = _APPLICATION
         header.file_name.originating_system = _APPLICATION
         return self.file.to_string()
@@ -516,8 +516,3 @@ def _quantity_class(name: str) -> str:
         if name.endswith(measure):
             return f"IfcQuantity{measure}"
     return "IfcQuantityLength"
-
-
-def _plain(text: str) -> str:
-    """Return a text as the header of a file may hold it."""
-    return text.encode("ascii", "replace").decode()
