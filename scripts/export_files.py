@@ -96,10 +96,16 @@ def export_files(
     )
     sizes = catalogue or read_catalogue(None)
     regular = _draft_regular(drawn, settings["max_change_m"], sizes)
+
+    def models() -> dict[str, str]:
+        # to go on with first: what is left out of that is in the other
+        wanted = [what for what in ("editable", "ifc") if what in outputs]
+        return {Path(outputs[what]).name: str(writers[what]()) for what in wanted}
+
     writers: dict[str, Callable[[], str | bytes]] = {
-        "ifc": lambda: _format_ifc(drawn, ids, origin),
-        "editable": lambda: _format_editable(drawn, regular, ids, origin, sizes),
-        "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin),
+        "ifc": cache(lambda: _format_ifc(drawn, ids, origin)),
+        "editable": cache(lambda: _format_editable(drawn, regular, ids, origin, sizes)),
+        "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin, models()),
         "openplan": lambda: _format_openplan(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),

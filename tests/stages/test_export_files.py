@@ -5,6 +5,7 @@ import sqlite3
 import zipfile
 from unittest.mock import Mock
 
+import bcf.v2.bcfxml
 import ifcopenshell
 import numpy as np
 import pandas as pd
@@ -145,6 +146,28 @@ def test_no_date_is_invented_where_the_clock_was_not_set(plan, tmp_path):
         assert not any(b"2024" in topics.read(name) for name in topics.namelist())
     about = sqlite3.connect(made["gpkg"]).execute("SELECT last_change FROM gpkg_contents")
     assert {stamp[:10] for (stamp,) in about} == {"1970-01-01"}
+
+
+def test_topics_select_what_is_in_the_model_that_they_name(plan, tmp_path):
+    """A loose piece of wall in a room, to be verified, is left out of the regular model."""
+    ends = {"x0_m": 1.0, "y0_m": 1.0, "x1_m": 1.3, "y1_m": 1.0}
+    walls = floorplan_making.walls()
+    made = {name: np.append(values, values[-1:]) for name, values in walls.items()}
+    made |= {"wall": np.arange(7, dtype=np.int32), "verify": np.arange(7) == 6}
+    for name, value in (ends | {"thickness_m": np.nan, "face_right": -1}).items():
+        made[name][6] = value
+    tables.write_table(plan["walls"], schemas.PLAN_WALLS, made)
+    files = exported(plan, tmp_path, ["bcf", "ifc", "editable"])
+    texts = {files[what].name: files[what].read_text() for what in ("ifc", "editable")}
+    found = bcf.v2.bcfxml.BcfXml.load(files["bcf"])
+    named = set()
+    for handler in found.topics.values():
+        (file,) = handler.markup.header.file
+        (view,) = handler.viewpoints.values()
+        for component in view.visualization_info.components.selection.component:
+            assert f"'{component.ifc_guid}'" in texts[file.filename]
+        named.add(file.filename)
+    assert "plan.ifc" in named
 
 
 def test_a_mask_is_drawn_once_for_its_image_and_its_settings(plan, tmp_path, monkeypatch):
