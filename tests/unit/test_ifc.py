@@ -1,3 +1,4 @@
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import ifcopenshell
@@ -14,7 +15,8 @@ from helpers.ifc_volumes import volume_m3
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_origin import ModelOrigin, Site
-from scanplan.exports.sheet.locale import Locale
+from scanplan.exports.sheet.locale import Locale, make_locale
+from scanplan.project.words_file import read_words
 
 pytestmark = pytest.mark.wording
 
@@ -224,6 +226,17 @@ def test_walls_say_whether_they_are_external_and_that_load_bearing_is_unknown(mo
         "Door 1": False,
         "Window 2": True,
     }
+
+
+def test_names_are_in_the_language_but_for_those_of_a_person():
+    rooms = floorplan_making.rooms() | {"name": np.array(["wall", ""], object)}
+    german = make_locale("cm", read_words("de"))
+    drawn = replace(plan(rooms=rooms), room_word=german.say("Room"))
+    model = opened(drawn, origin=ModelOrigin(locale=german))
+    doors = [door.Name for door in model.by_type("IfcDoor")]
+    assert doors == ["Tür 0, 100 cm, wall nach außen", "Tür 1, 90 cm, wall nach Raum 1"]
+    walls = [wall.Name for wall in model.by_type("IfcWall")]
+    assert walls[1] == "Wand 1, außen, Dicke angenommen" and walls[5] == "Wand 5, innen, 10 cm"
 
 
 def test_names_say_what_an_element_is_by_the_number_that_tables_have():

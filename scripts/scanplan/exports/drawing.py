@@ -9,7 +9,7 @@ from scanplan.exports.sheet.composition import Sheet, paper_marks, paper_words
 from scanplan.exports.sheet.lettering import FONT, POINTS_PER_MM, font_size_mm, rotation
 from scanplan.exports.sheet.marks import Mark, flatten
 from scanplan.exports.sheet.paper import SIZES_MM
-from scanplan.exports.sheet.styles import STYLES
+from scanplan.exports.sheet.styles import STYLES, Letters
 from scanplan.types import FloatArray, IntArray
 
 _PER_RAD = 60.0  # short lines of an arc: 0.01 mm off at a radius of 300 mm
@@ -17,7 +17,6 @@ _MM_PER_INCH = 25.4
 _EDGE_MM = 5.0  # of tiles: what printers leave white
 _OVERLAP_MM = 5.0  # of tiles: to lay one on the next and see the same on both
 _LINE_MM = 0.5  # of a frame, beyond its middle
-_TAG_PT = 5.0  # of what a tile is called, in its margin
 _BEYOND_MM = 50.0  # of a curved wall's chord: its arc
 _ALIGNMENTS = {0.0: "left", 0.5: "center", 1.0: "right"}
 
@@ -59,8 +58,10 @@ def draw_tiles(sheet: Sheet) -> list[Figure]:
             x, y = (frame_mm[0] + step_mm * [column, n_down - 1 - row]).tolist()
             window = (x, y, x + float(part_mm[0]), y + float(part_mm[1]))
             _draw_part(figure, sheet, window, (*low, *size))
-            said = f"{sheet.name}: page {chr(ord('A') + row)}{column + 1} of {n_down} x {n_across}"
-            figure.text(low[0], low[1] / 4, said, family=FONT, fontsize=_TAG_PT, parse_math=False)
+            part = f"page {chr(ord('A') + row)}{column + 1} of {n_down} x {n_across}"
+            said = f"{sheet.name}: {sheet.page.locale.say(part)}"
+            points = font_size_mm(Letters.SMALL) * POINTS_PER_MM
+            figure.text(low[0], low[1] / 4, said, family=FONT, fontsize=points, parse_math=False)
             tiles.append(figure)
     return tiles
 
