@@ -5,6 +5,7 @@ from pathlib import Path
 
 from scanplan.exports.changes import annotated_ifc, model_facts
 from scanplan.exports.data import model_topics
+from scanplan.recordings.clocks import end_of_survey_ns
 from scanplan.stage import log
 from scanplan.store import atomic, schemas, tables
 from scanplan.types import FilePath
@@ -37,9 +38,8 @@ def annotate_design(
     facts = model_facts.gather_deviations(columns)
     found = model_facts.list_topics(columns, floor_m)
     name = Path(design).stem
-    at_ns = int(stamps.min()) if len(stamps) else 0
     atomic.write_text(model, annotated_ifc.annotate_model(design, "Scanplan_AsBuilt", facts))
-    atomic.write_bytes(topics, model_topics.format_topics(name, found, at_ns))
+    atomic.write_bytes(topics, model_topics.format_topics(name, found, end_of_survey_ns(stamps)))
     log.log_line(
         f"annotate_design: {len(facts)} elements with properties, {len(found)} topics of what"
         " differs"

@@ -59,6 +59,8 @@ def correct_plan(
     placed = ""
     if reference is not None:
         notes |= {"georeference": georeference.format_reference(reference)}
+        for line in reference.faults:
+            log.log_warning(f"correct_plan: {corrections}: {line}")
         placed = f"; {len(points)} reference points agree within {reference.residual_m:.2f} m"
         if reference.fits_mirrored:
             fault = "no residual shows exchanged axes, as all points lie on one line"

@@ -14,6 +14,7 @@ from scanplan.exports.model_origin import find_site
 from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import GeoReference
 from scanplan.plan.survey_scale import find_factor
+from scanplan.recordings.clocks import end_of_survey_ns
 from scanplan.recordings.survey import Reading, open_colours
 from scanplan.selection import stopping
 from scanplan.stage import log
@@ -55,7 +56,7 @@ def export_cloud(
     wanted = store.scan_ids
     if settings["scans"] == "chosen":
         wanted = np.sort(stopping.read_chosen_scans(inputs["selection"], **stop)[0])
-    t_ns = int(registered_scans.read_registered_scans(inputs["registration"]).t_ns[-1])
+    registered = registered_scans.read_registered_scans(inputs["registration"])
     note = tables.read_note(free, schemas.FREE, "georeference")
     site = find_site(GeoReference(**json.loads(note)) if note else None, settings["site"])
     picture = _begin_picture(free)
@@ -68,7 +69,7 @@ def export_cloud(
             temporary,
             _draw(_colour(clouds, read_colours), picture, _read_factor(free)),
             settings["cell_m"],
-            t_ns,
+            end_of_survey_ns(registered.t_ns),
             site,
             coloured=read_colours is not None,
         )

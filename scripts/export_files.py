@@ -17,6 +17,7 @@ from scanplan.exports.data import (
     element_tables,
     geopackage,
     mesh,
+    nominal_widths,
     room_graph,
     wayfinding,
 )
@@ -30,6 +31,7 @@ from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.plan.survey_scale import find_factor
 from scanplan.project.catalogue_file import read_catalogue
 from scanplan.project.words_file import tag_language
+from scanplan.recordings.clocks import end_of_survey_ns
 from scanplan.stage import log
 from scanplan.store import atomic, registered_scans, schemas, sqlite_paths, tables, tum
 from scanplan.store.pose_columns import pose_matrices
@@ -79,7 +81,7 @@ def export_files(
     locale = make_locale(settings["units"], words)
     drawn = replace(scale_floorplan(in_map), room_word=locale.say("Room"))
     registered = registered_scans.read_registered_scans(plan["registration"])
-    t_ns = int(registered.t_ns[-1])
+    t_ns = end_of_survey_ns(registered.t_ns)
     ids = _identify_elements(in_map, outputs["ids"], outputs["known"], source)
     site = find_site(drawn.georeference, settings["site"])
     origin = ModelOrigin(
@@ -92,12 +94,18 @@ def export_files(
         site=site,
         locale=locale,
     )
+    sizes = catalogue or read_catalogue(None)
+    regular = _draft_regular(drawn, settings["max_change_m"], sizes)
+
+    def models() -> dict[str, str]:
+        # to go on with first: what is left out of that is in the other
+        wanted = [what for what in ("editable", "ifc") if what in outputs]
+        return {Path(outputs[what]).name: str(writers[what]()) for what in wanted}
+
     writers: dict[str, Callable[[], str | bytes]] = {
-        "ifc": lambda: _format_ifc(drawn, ids, origin),
-        "editable": lambda: _format_editable(
-            drawn, ids, origin, settings["max_change_m"], catalogue or read_catalogue(None)
-        ),
-        "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin),
+        "ifc": cache(lambda: _format_ifc(drawn, ids, origin)),
+        "editable": cache(lambda: _format_editable(drawn, regular, ids, origin, sizes)),
+        "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin, models()),
         "openplan": lambda: _format_openplan(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
@@ -108,7 +116,8 @@ def export_files(
         ("speed", grid_map.draw_speed, "raw"),
     ):
         writers |= _write_mask(mask, lambda draw=draw: draw(in_map, settings["map_cell_m"]), mode)
-    rows = element_tables.tabulate_elements(drawn, ids)
+    nominal_m = nominal_widths.find_nominal_widths(regular, sizes)
+    rows = element_tables.tabulate_elements(drawn, ids, nominal_m)
     for table in ("walls", "openings", "rooms"):
         writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
     language = tag_language(settings["language"])
@@ -155,19 +164,23 @@ def _write_mask(
     }
 
 
+def _draft_regular(plan: FloorPlan, max_change_m: float, catalogue: Mapping[str, Any]) -> FloorPlan:
+    # scipy, which takes a second to import
+    from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
+
+    return draft_plan(plan, make_draft_settings(max_change_m, catalogue))[0]
+
+
 def _format_editable(
     plan: FloorPlan,
+    regular: FloorPlan,
     ids: ElementIds,
     origin: ModelOrigin,
-    max_change_m: float,
     catalogue: Mapping[str, Any],
 ) -> str:
     """Return the regular plan as a building model, whose elements have the ids of the measured."""
-    # scipy besides, which takes a second to import
     from scanplan.exports import ifc
-    from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 
-    regular, _ = draft_plan(plan, make_draft_settings(max_change_m, catalogue))
     own_ids = element_ids.take_ids(ids, plan, regular)
     return ifc.format_ifc(regular, own_ids, origin, catalogue=catalogue)
 

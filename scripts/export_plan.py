@@ -65,7 +65,7 @@ def export_plan(
     cad = dxf.format_dxf(sheet, settings["dxf_unit"], told.get("layers"), site)
     atomic.write_text(outputs["dxf"], cad)
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
-    heading = f"Floor plan of {sheet.name}"
+    heading = f"Floor plan of {facts.project or sheet.name}"
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf([figure], heading, facts.answerable))
     atomic.write_bytes(outputs["png"], figure_files.format_png(figure))
     atomic.write_bytes(outputs["pgm"], grid_map.format_pgm(grid))

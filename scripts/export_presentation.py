@@ -61,7 +61,7 @@ def export_presentation(
     sheet = compose_presentation(measured, regular, drafted, facts, turn_deg=turn_deg)
     figures = [drawing.draw_sheet(page) for page in (sheet, overview) if page is not None]
     atomic.write_text(outputs["svg"], svg.format_svg_sheet(sheet))
-    title = f"Floor plan of {sheet.name}"
+    title = f"Floor plan of {facts.project or sheet.name}"
     atomic.write_bytes(outputs["pdf"], figure_files.format_pdf(figures, title, facts.answerable))
     tiled = drawing.draw_tiles(sheet)
     tiles = figure_files.format_pdf(tiled, f"{title}, on A3", facts.answerable)

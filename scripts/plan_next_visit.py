@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 
 from scanplan.exports import visit_geojson
+from scanplan.exports.model_origin import find_site
 from scanplan.plan import floorplan_files
+from scanplan.plan.survey_scale import find_factor
 from scanplan.rays.tolerances import FEW
 from scanplan.selection import stopping
 from scanplan.stage import log
@@ -21,6 +23,7 @@ def plan_next_visit(
     *,
     name: str,
     settings: Settings,
+    site: Settings | None = None,
     **stop: Any,
 ) -> None:
     """Write what of a plan a second visit is to settle, and the standpoints from which it does.
@@ -37,6 +40,8 @@ def plan_next_visit(
         The dataset's.
     settings : dict
         Keywords of `next_visit.VisitSettings`.
+    site : dict, optional
+        Where the map lies, as `model_origin.find_site` takes it; reference points come first.
     **stop
         How many scans make the plan, see `stopping.choose_n_scans`.
     """
@@ -60,7 +65,10 @@ def plan_next_visit(
     tables.write_table(
         outputs["standpoints"], schemas.STANDPOINTS, visit.standpoints, allow_empty=True
     )
-    atomic.write_text(outputs["geojson"], visit_geojson.format_visit(name, visit, words))
+    placed = find_site(drawn.georeference, site or {})
+    factor = find_factor(drawn.scale)
+    collection = visit_geojson.format_visit(name, visit, words, placed, factor)
+    atomic.write_text(outputs["geojson"], collection)
     log.log_line(f"plan_next_visit: {words}")
 
 
@@ -71,5 +79,6 @@ if __name__ == "__main__":
             dict(snakemake.output.items()),
             name=snakemake.wildcards.dataset,
             settings=snakemake.params.settings,
+            site=snakemake.params.site,
             **snakemake.params.stop,
         )

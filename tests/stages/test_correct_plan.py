@@ -192,10 +192,33 @@ def test_each_control_and_check_point_has_its_residual(plan):
     ]
     said.append({"element": "check_point", "at": [5, 0], "world": [1005.1, 2000.3], **known})
     reference = corrected(plan, *said).georeference
-    assert reference.control_off_m == pytest.approx([0.1, 0.1])
-    assert reference.check_off_m == pytest.approx([0.3])
+    (first, first_m), (second, second_m) = reference.control_off_m
+    assert (first, second) == ("entry 1", "entry 2")
+    assert (first_m, second_m) == pytest.approx((0.1, 0.1))
+    ((check, check_m),) = reference.check_off_m
+    assert check == "entry 3" and check_m == reference.check_rms_m == pytest.approx(0.3)
     without = corrected(plan, *said[:2]).georeference
     assert (without.east_m, without.rotation_rad) == (reference.east_m, reference.rotation_rad)
+
+
+def test_points_that_are_off_are_told_by_their_names(plan, caplog):
+    """One of five points is off by 0.2 m, each known to 1 cm; so is the check point."""
+    known = {"crs": "EPSG:25832", "sigma_m": 0.01}
+    places = [(0, 0), (7, 0), (7, 3), (0, 3), (3, 2)]
+    said = [
+        {"element": "reference_point", "at": [x, y], "world": [1000 + x, 2000 + y], **known}
+        for x, y in places
+    ]
+    check = {"element": "check_point", "at": [5, 1], "world": [1005, 2001.2], **known}
+    assert not corrected(plan, *said).georeference.faults
+    said[1] |= {"name": "P7", "world": [1007.2, 2000]}
+    reference = corrected(plan, *said, check).georeference
+    point, held = reference.faults
+    assert_told(point, value=("entry 2 (P7)", "0.200 m", "3.5"), remedy="measure it again")
+    assert_told(held, value=("entry 6", "3.5"), remedy="measure it")
+    assert_told(caplog.text, file="corrections.yaml", value="entry 2 (P7)")
+    assert [name for name, _ in reference.control_off_m][:2] == ["entry 1", "P7"]
+    assert point in state_reference(reference)
 
 
 @pytest.mark.parametrize(

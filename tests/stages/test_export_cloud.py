@@ -14,7 +14,7 @@ from scanplan.plan.floorplan import GeoReference
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
 
-T_S = 1_700_000_000
+T_S = 1_699_990_000
 LEVELS = {"floor_z_m": "0.0", "ceiling_z_m": "2.5"}
 WHITE = (255, 255, 255)
 COLOURS = ((255, 0, 0), (0, 128, 0), (0, 0, 255))

@@ -1,8 +1,11 @@
 """The plan's files for other programs hold one plan, and its elements keep their ids."""
 
 import json
+import sqlite3
+import zipfile
 from unittest.mock import Mock
 
+import bcf.v2.bcfxml
 import ifcopenshell
 import numpy as np
 import pandas as pd
@@ -33,7 +36,7 @@ TABLES = {
     "free": (schemas.FREE, floorplan_making.free),
 }
 FILES = export_formats.list_files(export_formats.FILES)
-LAST_S = 1_700_000_003
+LAST_S = 1_712_345_678
 
 
 def registration():
@@ -90,6 +93,25 @@ def test_names_of_rooms_that_nobody_named_are_in_the_language_in_all_files(plan,
     assert names == [{"de": "Room"}, {"de": "Raum 1"}]
 
 
+def test_ways_are_as_wide_as_the_regular_drawing_has_them(plan, tmp_path):
+    """The door between the rooms was seen 2 cm too narrow: it is drawn, and passed, as of 0.9 m."""
+    openings = floorplan_making.openings()
+    openings["y1_m"][1] -= 0.02
+    openings["width_m"][1] = 0.88
+    tables.write_table(plan["openings"], schemas.OPENINGS, openings)
+    made = exported(plan, tmp_path, ["json", "openings_csv", "editable"])
+    content = json.loads(made["json"].read_text())
+    assert [(way["width_m"], way["nominal_width_m"]) for way in content["ways"]] == [
+        *((1.0, 1.0), (0.88, 0.9))
+    ]
+    assert content["wheelchair"]["groups"] == [[0, 1]] and content["wheelchair"]["to_tape"] == [1]
+    door = ifcopenshell.open(made["editable"]).by_guid(content["ways"][1]["global_id"])
+    assert door.OverallWidth == pytest.approx(0.9)
+    # drawn as measured
+    made = exported(plan, tmp_path, ["openings_csv"], max_change_m=0.0)
+    assert pd.read_csv(made["openings_csv"])["nominal_width_m"].isna()[1]
+
+
 def exported_model(plan, folder):
     return ifcopenshell.open(exported(plan, folder, ["ifc"])["ifc"])
 
@@ -108,6 +130,44 @@ def test_independent_readers_find_the_same_plan_in_all_files(plan, tmp_path):
     assert len(trimesh.load_scene(files["glb"]).geometry) == 11
     written = tables.read_table(files["ids"], schemas.ELEMENT_IDS)
     assert written["global_id"][written["kind"] == "wall"].tolist() == ids
+
+
+def test_no_date_is_invented_where_the_clock_was_not_set(plan, tmp_path):
+    """It began at New Year, as computers without a battery do, and ended two hours later."""
+    registered, _ = registration()
+    new_year_s = 1_704_067_200
+    registered["t_ns"] = (new_year_s + np.array([5, 6, 7, 7200], np.int64)) * 10**9
+    tables.write_table(plan["registration"], schemas.REGISTRATION, registered)
+    made = exported(plan, tmp_path, ["ifc", "bcf", "gpkg"])
+    model = ifcopenshell.open(made["ifc"])
+    assert model.by_type("IfcOwnerHistory")[0].CreationDate == 0
+    assert model.header.file_name.time_stamp.startswith("1970-01-01")
+    with zipfile.ZipFile(made["bcf"]) as topics:
+        assert not any(b"2024" in topics.read(name) for name in topics.namelist())
+    about = sqlite3.connect(made["gpkg"]).execute("SELECT last_change FROM gpkg_contents")
+    assert {stamp[:10] for (stamp,) in about} == {"1970-01-01"}
+
+
+def test_topics_select_what_is_in_the_model_that_they_name(plan, tmp_path):
+    """A loose piece of wall in a room, to be verified, is left out of the regular model."""
+    ends = {"x0_m": 1.0, "y0_m": 1.0, "x1_m": 1.3, "y1_m": 1.0}
+    walls = floorplan_making.walls()
+    made = {name: np.append(values, values[-1:]) for name, values in walls.items()}
+    made |= {"wall": np.arange(7, dtype=np.int32), "verify": np.arange(7) == 6}
+    for name, value in (ends | {"thickness_m": np.nan, "face_right": -1}).items():
+        made[name][6] = value
+    tables.write_table(plan["walls"], schemas.PLAN_WALLS, made)
+    files = exported(plan, tmp_path, ["bcf", "ifc", "editable"])
+    texts = {files[what].name: files[what].read_text() for what in ("ifc", "editable")}
+    found = bcf.v2.bcfxml.BcfXml.load(files["bcf"])
+    named = set()
+    for handler in found.topics.values():
+        (file,) = handler.markup.header.file
+        (view,) = handler.viewpoints.values()
+        for component in view.visualization_info.components.selection.component:
+            assert f"'{component.ifc_guid}'" in texts[file.filename]
+        named.add(file.filename)
+    assert "plan.ifc" in named
 
 
 def test_a_mask_is_drawn_once_for_its_image_and_its_settings(plan, tmp_path, monkeypatch):

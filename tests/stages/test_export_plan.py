@@ -43,10 +43,16 @@ def plan(tmp_path):
     return paths
 
 
-def exported(plan, folder):
+def exported(plan, folder, **stated):
     outputs = {kind: folder / name for kind, name in NAMES.items()}
-    export_plan(plan, outputs, name="office", settings=SETTINGS)
+    export_plan(plan, outputs, name="office", settings=SETTINGS | stated)
     return outputs
+
+
+def test_a_pdf_is_titled_by_the_project_that_is_named(plan, tmp_path):
+    assert b"Floor plan of office" in exported(plan, tmp_path / "a")["pdf"].read_bytes()
+    named = exported(plan, tmp_path / "b", project="Town hall")
+    assert b"Floor plan of Town hall" in named["pdf"].read_bytes()
 
 
 def test_all_files_hold_the_same_plan(plan, tmp_path):

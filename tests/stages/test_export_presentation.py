@@ -31,6 +31,13 @@ def exported(folder, empty=(), **settings):
     return outputs
 
 
+def test_pdfs_are_titled_by_the_project_that_is_named(files, tmp_path):
+    assert b"Floor plan of office" in files["pdf"].read_bytes()
+    named = exported(tmp_path, project="Town hall")
+    for what in ("pdf", "tiles"):
+        assert b"Floor plan of Town hall" in named[what].read_bytes()
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     return exported(tmp_path_factory.mktemp("plan"))

@@ -25,7 +25,7 @@ def house(tmp_path_factory):
     return {name: paths[name] for name in PARTS} | further
 
 
-def planned(plan, folder, doubtful=()):
+def planned(plan, folder, doubtful=(), **stated):
     """Plan a visit where the rooms named are doubtful and all else is sure."""
     parts = []
     for table, number in sorted(floorplan.NUMBERS.items()):
@@ -46,7 +46,7 @@ def planned(plan, folder, doubtful=()):
     files = {name: folder / f"{name}.parquet" for name in ("questions", "standpoints")}
     files["geojson"] = folder / "next_visit.geojson"
     known = plan | {"confidence": folder / "confidence.parquet"}
-    plan_next_visit(known, files, name="house", settings=SETTINGS, n_scans=None)
+    plan_next_visit(known, files, name="house", settings=SETTINGS, n_scans=None, **stated)
     asked = tables.read_table(files["questions"], schemas.QUESTIONS, allow_empty=True)
     stops = tables.read_table(files["standpoints"], schemas.STANDPOINTS, allow_empty=True)
     return asked, stops, json.loads(files["geojson"].read_text())
@@ -68,6 +68,15 @@ def test_a_doubtful_room_is_seen_from_within(house, tmp_path):
         x_m, y_m = area.centroid.x, area.centroid.y
         assert np.hypot(stops["x_m"] - x_m, stops["y_m"] - y_m).max() < 2
         assert np.isnan(stops["heading_deg"]).all()
+
+
+def test_a_visit_is_placed_where_the_settings_place_the_plan(house, tmp_path):
+    site = {"crs": "EPSG:25832", "east_m": 5e5, "north_m": 54e5}
+    _, stops, collection = planned(house, tmp_path, doubtful=[0], site=site)
+    assert collection["crs"]["properties"]["name"].endswith("25832")
+    x_m, y_m = collection["features"][0]["geometry"]["coordinates"]
+    placed = (5e5 + stops["x_m"][0], 54e5 + stops["y_m"][0])
+    assert (x_m, y_m) == pytest.approx(placed, abs=1e-3)
 
 
 def test_the_same_tables_give_the_same_bytes(house, tmp_path):

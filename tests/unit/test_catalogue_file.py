@@ -1,5 +1,6 @@
 """Catalogues of nominal sizes: what they may say, and one line for each mistake."""
 
+import json
 import re
 
 import pytest
@@ -15,6 +16,9 @@ doors: [{name: leaf, size_m: 1}]
 windows: []
 facade_m: 0.42
 """
+
+
+TITLED = "classification: {{system: X, walls: W, doors: D, windows: G, titles: {}}}"
 
 
 def written(folder, text):
@@ -41,10 +45,25 @@ def test_lists_have_a_code_and_entries_may_have_their_own(tmp_path):
     # a window of the same name has its own, or none
     own = own.replace("windows: []", "windows: [{name: leaf, size_m: 1}]")
     read = read_catalogue(written(tmp_path, own))
-    assert read["classification"] == {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"}
+    codes = {"walls": "W", "doors": "D", "windows": "G"}
+    assert read["classification"] == {"system": "Ours", **codes, "titles": {}}
     assert read["codes"] == {"walls": {}, "doors": {"leaf": "D.2"}, "windows": {}} and read[
         "doors"
     ] == {"leaf": 1.0}
+
+
+def test_a_system_may_state_who_publishes_it_its_edition_and_titles(tmp_path):
+    stated = {"source": "Us", "edition": "2", "titles": {"W": "Walls", "D.2": "Leaves"}}
+    system = {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"} | stated
+    text = f"{GOOD}classification: {json.dumps(system)}\n"
+    assert read_catalogue(written(tmp_path, text))["classification"] == system
+
+
+@pytest.mark.parametrize("region", [None, "north_america"])
+def test_all_codes_of_ours_have_a_title(region):
+    system = read_catalogue(region)["classification"]
+    assert system["source"]
+    assert {system[kind] for kind in ("walls", "doors", "windows")} == set(system["titles"])
 
 
 def test_ours_is_read_where_none_is_given():
@@ -71,6 +90,8 @@ def test_ours_is_read_where_none_is_given():
         ("facade_m: 0.42", "facade_m: 0", "facade_m"),
         ("facade_m: 0.42", "facade_m: 0.42\nclassification: {system: X, walls: W}", "windows"),
         ("facade_m: 0.42", "facade_m: 0.42\nclassification: 3", "classification"),
+        ("facade_m: 0.42", f"facade_m: 0.42\n{TITLED.format('W')}", "titles"),
+        ("facade_m: 0.42", f"facade_m: 0.42\n{TITLED.format('{W: 3}')}", "titles, W"),
         ("size_m: 1}", "size_m: 1, code: ''}", "doors, entry 1: code"),
     ],
 )

@@ -150,6 +150,15 @@ def test_of_a_year_at_most_some_hours_are_no_date(t_s):
     assert any(hours)
 
 
+def test_a_survey_ends_with_its_last_stamp_and_nowhere_where_its_clock_was_not_set():
+    begin_ns = stamp_ns("2026-03-01T09:30:00")
+    stamps = begin_ns + np.array([5, 0, 7], np.int64) * S
+    assert clocks.end_of_survey_ns(stamps) == begin_ns + 7 * S
+    begin_ns = stamp_ns("2024-01-01T00:00:10")
+    assert clocks.end_of_survey_ns(begin_ns + np.array([0, 9000], np.int64) * S) == 0
+    assert clocks.end_of_survey_ns(np.zeros(0, np.int64)) == 0
+
+
 def test_of_several_gaps_the_widest_is_named():
     day_ns = 86_400 * 10**9
     assert clocks.describe_gaps([("a", 0), ("b", day_ns)]) == []

@@ -216,6 +216,21 @@ def test_two_entries_of_one_place_are_told(tmp_path):
         read_corrections(written(tmp_path, text))
 
 
+def test_points_have_names_and_sigmas(tmp_path):
+    told = "world: [500000, 5400000], crs: EPSG:25832, sigma_m: 0.01, name: P1"
+    other = told.replace("500000", "500009").replace("P1", "K1")
+    path = written(
+        tmp_path,
+        f"corrections:\n- {{element: reference_point, at: [0, 0], {told}}}\n"
+        f"- {{element: reference_point, at: [9, 0], {other}}}\n"
+        f"- {{element: check_point, at: [9, 0], {other}}}\n",
+    )
+    points = read_corrections(path)
+    assert [(point.name, point.sigma_m) for point in points] == [
+        *(("P1", 0.01), ("K1", 0.01), ("K1", 0.01))
+    ]
+
+
 def test_reference_points_in_two_systems_are_told(tmp_path):
     with pytest.raises(StageError, match="several `crs`"):
         read_corrections(written(tmp_path, GOOD.replace("EPSG:25832", "EPSG:25833", 1)))

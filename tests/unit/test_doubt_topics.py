@@ -61,6 +61,31 @@ def test_a_topic_for_each_doubt_selects_its_element_from_above(doubted, tmp_path
         assert plane.location.z == pytest.approx(0.9) and plane.direction.z == 1
 
 
+def test_a_topic_names_the_first_model_that_has_its_element(doubted, tmp_path):
+    """The wall is left out of the first model, the room of both."""
+    ids = element_ids.ids_from_places(doubted)
+    wall = next(d.number for d in list_doubts(doubted) if d.kind == "wall")
+    hosts = doubted.faces["wall"][[d.number for d in list_doubts(doubted) if d.kind == "face"]]
+    (host,) = {int(number) for number in hosts} - {wall}
+    models = {
+        "presentation.ifc": f"IFCWALL('{ids['wall'][host]}')",
+        "plan.ifc": f"IFCWALL('{ids['wall'][host]}'); IFCWALL('{ids['wall'][wall]}')",
+    }
+    found = read(doubt_topics.format_bcf(doubted, ids, ORIGIN, models), tmp_path)
+    told = {}
+    for handler in found.topics.values():
+        (file,) = handler.markup.header.file
+        (view,) = handler.viewpoints.values()
+        selection = view.visualization_info.components.selection
+        chosen = [c.ifc_guid for c in selection.component] if selection else []
+        told[handler.topic.labels[0]] = (file.filename, chosen)
+    assert told == {
+        "wall": ("plan.ifc", [ids["wall"][wall]]),
+        "face": ("presentation.ifc", [ids["wall"][host]]),
+        "room": ("presentation.ifc", []),
+    }
+
+
 def test_the_same_plan_gives_the_same_bytes(doubted):
     ids = element_ids.ids_from_places(doubted)
     first = doubt_topics.format_bcf(doubted, ids, ORIGIN)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import shapely
 from matplotlib.figure import Figure
+from matplotlib.textpath import TextPath
 from PIL import Image
 
 from helpers import floorplan_making
@@ -196,7 +197,9 @@ def test_a_sheet_no_larger_than_a3_is_one_page_of_its_own_size():
 )
 def test_a_large_sheet_goes_on_pages_of_a3_that_show_all_of_it_to_scale(size_mm, page_mm, n_pages):
     sheet = composition.compose_sheet(plan())
-    large = replace(sheet, page=replace(sheet.page, name="large", size_mm=size_mm))
+    german = make_locale("m", read_words("de"))
+    page = replace(sheet.page, name="large", size_mm=size_mm, locale=german)
+    large = replace(sheet, page=page)
     tiles = drawing.draw_tiles(large)
     assert len(tiles) == n_pages
     windows_mm = []
@@ -214,6 +217,12 @@ def test_a_large_sheet_goes_on_pages_of_a3_that_show_all_of_it_to_scale(size_mm,
     # row by row from the upper left
     assert windows_mm[0].bounds[0] == pytest.approx(19.5)
     assert windows_mm[0].bounds[3] >= size_mm[1] - 10
+    (mark,) = tiles[-1].texts
+    last, pages = {2: ("A2", "1 x 2"), 6: ("C2", "3 x 2")}[n_pages]
+    assert mark.get_text().endswith(f"Seite {last} von {pages}")
+    capitals = TextPath((0, 0), "H", size=mark.get_fontsize(), prop={"family": lettering.FONT})
+    # points of the size are 72 an inch
+    assert capitals.get_extents().height / 72 * 25.4 >= 1.79
     drawn = {patch.get_gid() for tile in tiles for patch in tile.axes[0].patches}
     assert {patch.get_gid() for patch in drawing.draw_sheet(large).axes[0].patches} == drawn
 

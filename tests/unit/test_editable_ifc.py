@@ -20,7 +20,10 @@ CATALOGUE = {
     "doors": {"leaf": 0.9, "gate": 1.0},
     "windows": {"pane": 1.2},
     "facade_m": 0.3,
-    "classification": {"system": "Ours", "walls": "W", "doors": "D", "windows": "G"},
+    "classification": {
+        **{"system": "Ours", "source": "Us", "walls": "W", "doors": "D", "windows": "G"},
+        "titles": {"W": "Walls", "W.1": "Brickwork"},
+    },
     "codes": {"walls": {"brick": "W.1"}, "doors": {"pane": "D.9"}, "windows": {}},
 }
 SETTINGS = make_draft_settings(0.05, CATALOGUE)
@@ -134,7 +137,14 @@ def test_codes_are_those_of_the_list_or_of_the_entry(model):
     assert codes(walls["0"]) == {("Ours", "W.1")} and codes(walls["5"]) == {("Ours", "W")}
     assert codes(elements(model, "IfcDoor")["1"]) == {("Ours", "D")}
     assert codes(elements(model, "IfcWindow")["2"]) == {("Ours", "G")}
-    assert len(model.by_type("IfcClassification")) == 1
+    (system,) = model.by_type("IfcClassification")
+    assert (system.Source, system.Edition) == ("Us", None)
+
+
+def test_codes_bear_their_titles_and_none_where_none_is_known(model):
+    references = model.by_type("IfcClassificationReference")
+    named = {reference.Identification: reference.Name for reference in references}
+    assert named == {"W": "Walls", "W.1": "Brickwork", "D": None, "G": None}
 
 
 @pytest.mark.parametrize(

@@ -78,6 +78,11 @@ def test_rooms_state_their_net_area_and_their_ways():
     assert rooms["net_area_m2"] == [11.75, 9.0] and rooms["area_m2"] == [12.0, 9.0]
     # an entrance of 1 m and a door of 0.9 m; the window is none
     assert rooms["n_ways"] == [2, 1] and rooms["widest_way_m"] == [1.0, 0.9]
+    assert rooms["n_doors"] == [2, 1]
+    passage = floorplan_making.openings()
+    passage["type"][1] = "passage"
+    rooms = tabulated(floorplan_making.plan(openings=passage))["rooms"]
+    assert rooms["n_doors"] == [1, 0] and rooms["n_ways"] == [2, 1]
     shut = floorplan_making.plan(openings=floorplan_making.openings([]))
     rooms = element_tables.tabulate_elements(shut, element_ids.ids_from_places(shut))["rooms"]
     assert rooms["n_ways"] == [0, 0] and rooms["widest_way_m"] == [None, None]

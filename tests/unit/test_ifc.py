@@ -1,3 +1,4 @@
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import ifcopenshell
@@ -14,7 +15,8 @@ from helpers.ifc_volumes import volume_m3
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
 from scanplan.exports.model_origin import ModelOrigin, Site
-from scanplan.exports.sheet.locale import Locale
+from scanplan.exports.sheet.locale import Locale, make_locale
+from scanplan.project.words_file import read_words
 
 pytestmark = pytest.mark.wording
 
@@ -226,6 +228,17 @@ def test_walls_say_whether_they_are_external_and_that_load_bearing_is_unknown(mo
     }
 
 
+def test_names_are_in_the_language_but_for_those_of_a_person():
+    rooms = floorplan_making.rooms() | {"name": np.array(["wall", ""], object)}
+    german = make_locale("cm", read_words("de"))
+    drawn = replace(plan(rooms=rooms), room_word=german.say("Room"))
+    model = opened(drawn, origin=ModelOrigin(locale=german))
+    doors = [door.Name for door in model.by_type("IfcDoor")]
+    assert doors == ["Tür 0, 100 cm, wall nach außen", "Tür 1, 90 cm, wall nach Raum 1"]
+    walls = [wall.Name for wall in model.by_type("IfcWall")]
+    assert walls[1] == "Wand 1, außen, Dicke angenommen" and walls[5] == "Wand 5, innen, 10 cm"
+
+
 def test_names_say_what_an_element_is_by_the_number_that_tables_have():
     rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}
     walls = floorplan_making.walls() | {"top_m": np.array([np.nan] * 5 + [1.2])}
@@ -429,6 +442,15 @@ def test_author_organisation_and_the_surveys_time_stand_in_it():
     assert history.OwningUser.ThePerson.FamilyName == "A. Surveyor"
     assert history.OwningApplication.Version == "abc"
     assert faults(model) == []
+
+
+def test_names_keep_their_letters_in_the_header():
+    origin = ModelOrigin(author="Åsa \\ l'Ω", organisation="Géomètres SA")
+    text = ifc.format_ifc(plan(name="étage"), origin=origin)
+    assert text.isascii() and "?" not in text.partition("ENDSEC;")[0]
+    header = ifcopenshell.file.from_string(text).header.file_name
+    assert header.organization == ("Géomètres SA",)
+    assert (header.name, *header.author) == ("étage", "Åsa \\ l'Ω")
 
 
 def test_project_and_storey_are_named_as_they_are_stated():

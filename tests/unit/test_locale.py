@@ -52,7 +52,7 @@ def test_nothing_on_a_sheet_stays_english(language):
 @pytest.mark.parametrize("language", ["en", *LANGUAGES])
 def test_a_title_block_holds_place_and_people_in_every_language(language):
     locale = make_locale("ft" if language == "en" else "m", read_words(language))
-    measured = GeoReference("EPSG:25832", 0.0, 0.0, 0.0, 0.0234)
+    measured = GeoReference("EPSG:25832", 0.0, 0.0, 0.0, 0.0234, check_off_m=[("K1", 0.02)])
     site = Site("EPSG:25832", 512_999.999, 5_401_999.999, turn_deg=130.0041)
     facts = SheetFacts(
         locale=locale,
@@ -91,6 +91,15 @@ def test_attributes_in_cad_are_in_the_unit_and_language_and_words_of_a_person_ar
     assert room["CORRECTED"] == "von Hand geändert, no, 01.03.2026"
     values = {word.element: word.text for word in sheet.paper_words}
     assert (values["title:STOREY"], values["title:AUTHOR"]) == ("Door", "no")
+
+
+def test_german_says_of_how_many_walls_in_the_dative_and_percents_apart():
+    german = make_locale("m", read_words("de"))
+    of = "are square to the building, 5 in line with others, 4 of nominal thickness."
+    assert german.say(f"Of 23 walls 22 {of}").startswith("Von 23 Wänden stehen 22 ")
+    assert german.say(f"Of 1 wall 1 {of}").startswith("Von 1 Wand steht 1 ")
+    said = german.say("12 of 12 rooms are closed, 100% of the floor")
+    assert said.endswith("100 % der Fläche")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from helpers import floorplan_making
 from scanplan.exports import visit_geojson
+from scanplan.exports.model_origin import Site
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
 from scanplan.validation.confidence import NOT_CLOSED, OF_DOUBTFUL_WALLS
@@ -112,6 +113,25 @@ def test_nothing_doubtful_is_said_and_gives_an_empty_collection():
     assert words == "nothing of the plan is unseen or doubtful"
     read = json.loads(visit_geojson.format_visit("bent", visit, words))
     assert read["features"] == [] and read["summary"] == words
+
+
+def test_a_visit_lies_where_the_plan_does_and_states_places_of_the_map():
+    """Turned by a quarter, and of a map that is too small by a hundredth."""
+    visit = visited(room_plan(BENT, ENDS))
+    site = Site("EPSG:25832", 500_000.0, 5_400_000.0, turn_deg=90.0)
+    read = json.loads(visit_geojson.format_visit("bent", visit, "", site, 1.01))
+    assert read["crs"]["properties"]["name"].endswith("EPSG::25832")
+    standpoint, way, question, _ = read["features"]
+    x_m, y_m = (standpoint["properties"][name] for name in ("x_m", "y_m"))
+    assert (x_m, y_m) == pytest.approx(
+        (visit.standpoints["x_m"][0], visit.standpoints["y_m"][0]), abs=1e-4
+    )
+    placed = [500_000 - 1.01 * y_m, 5_400_000 + 1.01 * x_m]
+    assert standpoint["geometry"]["coordinates"] == pytest.approx(placed, abs=1e-3)
+    assert way["geometry"]["coordinates"][-1] == pytest.approx(placed, abs=1e-3)
+    ((low, high),) = question["geometry"]["coordinates"]
+    assert low == pytest.approx([500_000, 5_400_008.08])
+    assert high == pytest.approx([500_000 - 2.02, 5_400_008.08])
 
 
 def test_the_collection_has_standpoints_ways_and_questions():

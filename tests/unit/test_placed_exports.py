@@ -161,4 +161,8 @@ def test_reference_points_outdo_the_settings():
     assert found.place(CORNER_M) == pytest.approx(WORLD_M, abs=1e-6)
     assert (found.crs, found.height_m) == ("EPSG:25832", 245.0)
     assert "residual 12 mm" in state_frame(found, measured)
+    assert "check" not in state_frame(found, measured)
+    checked = replace(measured, check_off_m=[("K1", 0.03), ("K2", 0.04)])
+    # the root of (9 + 16) / 2
+    assert "checks 35 mm" in state_frame(found, checked)
     assert find_site(None, stated).crs == "EPSG:3857"

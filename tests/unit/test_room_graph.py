@@ -11,8 +11,9 @@ from helpers.floorplan_making import ROOMS, bare, plan
 from scanplan.exports.data import element_ids, element_tables, room_graph
 
 
-def read(drawn):
-    rows = element_tables.tabulate_elements(drawn, element_ids.ids_from_places(drawn))
+def read(drawn, nominal_m=None):
+    ids = element_ids.ids_from_places(drawn)
+    rows = element_tables.tabulate_elements(drawn, ids, nominal_m)
     return json.loads(room_graph.format_room_graph(drawn, rows))
 
 
@@ -39,6 +40,23 @@ def test_wheelchairs_reach_rooms_through_ways_of_90_cm():
     narrow["width_m"][1] = 0.84
     assert read(plan(openings=narrow))["wheelchair"]["to_tape"] == []
     assert read(bare())["wheelchair"]["groups"] == []
+
+
+def test_wheelchairs_pass_doors_by_their_nominal_width():
+    narrow = floorplan_making.openings()
+    narrow["width_m"][:] = [0.87, 0.88, 1.0]
+    made = read(plan(openings=narrow), {1: 0.9})
+    assert [(way["width_m"], way["nominal_width_m"]) for way in made["ways"]] == [
+        *((0.87, None), (0.88, 0.9))
+    ]
+    joined = {"groups": [[0, 1]], "from_outside": [], "to_tape": [0, 1]}
+    assert made["wheelchair"] == {"least_width_m": 0.9, **joined}
+
+
+def test_a_door_of_a_narrower_size_is_no_way_for_wheelchairs():
+    narrow = floorplan_making.openings()
+    narrow["width_m"][1] = 0.9
+    assert read(plan(openings=narrow), {1: 0.89})["wheelchair"]["groups"] == [[0], [1]]
 
 
 def test_a_way_has_a_place_in_either_room():

@@ -105,10 +105,13 @@ def test_what_speaks_against_all_of_it_stands_before_what_is_merely_noted():
 
 
 def test_how_far_each_control_and_check_point_is_off_is_told():
-    reference = floorplan.GeoReference("EPSG:25832", 5e5, 54e5, 0.0, 0.2, [0.1, 0.3], [0.25])
+    controls = [("P1", 0.1), ("entry 2", 0.3)]
+    reference = floorplan.GeoReference(
+        "EPSG:25832", 5e5, 54e5, 0.0, 0.2, controls, [("K1", 0.25)], faults=["P1: is off; again"]
+    )
     placed = told_of(plan(georeference=reference))["placed"]
-    assert_told(placed, value=("2 control points", "0.100, 0.300 m", "EPSG:25832"))
-    assert_told(placed, value=("1 check point", "0.250 m"))
+    assert_told(placed, value=("2 control points", "P1 0.100, entry 2 0.300 m", "EPSG:25832"))
+    assert_told(placed, value=("1 check point", "K1 0.250 m", "P1: is off"))
 
 
 def test_a_share_that_is_not_known_is_not_stated():

@@ -39,6 +39,17 @@ def test_rooms_are_units_and_doors_openings_of_one_level(tmp_path):
     assert len({*level["id"], *units["id"], *doors["id"]}) == 5
 
 
+def test_wheelchairs_pass_doors_of_90_cm_that_were_seen_narrower():
+    openings = floorplan_making.openings()
+    openings["width_m"][:2] = 0.88
+    drawn = floorplan_making.plan(openings=openings)
+    ids = element_ids.ids_from_places(drawn)
+    rows = element_tables.tabulate_elements(drawn, ids, {1: 0.9})
+    doors = wayfinding.imdf_layers(drawn, rows)["imdf_opening"].rows
+    assert doors["accessibility"] == [None, "wheelchair"]
+    assert doors["width_m"] == [0.88, 0.88] and doors["nominal_width_m"] == [None, 0.9]
+
+
 def test_geojson_has_the_same_with_the_members_of_imdf(tmp_path):
     rooms = floorplan_making.rooms()
     rooms["use"][:] = ["restroom", "our den"]

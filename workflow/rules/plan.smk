@@ -125,6 +125,7 @@ rule plan_next_visit:
         code=code_of("plan_next_visit"),
         stop=section("selection", "stop"),
         settings=setting(stage_settings.select_visit),
+        site=section("plan", "export", "site"),
     script:
         "../../scripts/plan_next_visit.py"
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import ifcopenshell
 import numpy as np
@@ -39,6 +39,16 @@ Values = Mapping[str, tuple[str, Any]]
 """IFC types and values by name; None for what is not known."""
 
 
+class ClassCode(NamedTuple):
+    """A code of a system of classification; title, publisher and edition None where not stated."""
+
+    system: str
+    code: str
+    title: str | None = None
+    source: str | None = None
+    edition: str | None = None
+
+
 class IfcModel:
     """An IFC4 file of one storey, in metres.
 
@@ -70,7 +80,7 @@ class IfcModel:
         self.ids: set[str] = set()
         self._styles: dict[str, entity_instance] = {}
         self._systems: dict[str, entity_instance] = {}
-        self._codes: dict[tuple[str, str], entity_instance] = {}
+        self._codes: dict[ClassCode, entity_instance] = {}
         self._history = self._owner_history()
         units = self._units()
         context = self._contexts()
@@ -232,21 +242,21 @@ class IfcModel:
         rings = shapely.get_rings(shapely.get_parts(area))
         return [self._outline(shapely.get_coordinates(ring), circles_m) for ring in rings]
 
-    def classify(self, products: Sequence[entity_instance], system: str, code: str) -> None:
+    def classify(self, products: Sequence[entity_instance], code: "ClassCode") -> None:
         """Give products a code of a system of classification."""
-        if system not in self._systems:
-            self._systems[system] = self.file.create_entity("IfcClassification", Name=system)
-        if (system, code) not in self._codes:
-            self._codes[system, code] = self.file.create_entity(
+        if code.system not in self._systems:
+            self._systems[code.system] = self.file.create_entity(
+                "IfcClassification", Name=code.system, Source=code.source, Edition=code.edition
+            )
+        if code not in self._codes:
+            self._codes[code] = self.file.create_entity(
                 "IfcClassificationReference",
-                Identification=code,
-                Name=code,
-                ReferencedSource=self._systems[system],
+                Identification=code.code,
+                Name=code.title,
+                ReferencedSource=self._systems[code.system],
             )
         self.join(
-            "IfcRelAssociatesClassification",
-            products,
-            RelatingClassification=self._codes[system, code],
+            "IfcRelAssociatesClassification", products, RelatingClassification=self._codes[code]
         )
 
     def aggregate(self, whole: entity_instance, parts: Sequence[entity_instance]) -> None:
@@ -306,10 +316,10 @@ class IfcModel:
         header = self.file.header
         view = _TRANSFER if self.is_editable else _REFERENCE
         header.file_description.description = (view,)
-        header.file_name.name = _plain(self.name)
+        header.file_name.name = self.name
         header.file_name.time_stamp = self._surveyed_at.strftime("%Y-%m-%dT%H:%M:%S")
-        header.file_name.author = (_plain(self.origin.author),)
-        header.file_name.organization = (_plain(self.origin.organisation),)
+        header.file_name.author = (self.origin.author,)
+        header.file_name.organization = (self.origin.organisation,)
         header.file_name.preprocessor_version = _APPLICATION
         header.file_name.originating_system = _APPLICATION
         return self.file.to_string()
@@ -506,8 +516,3 @@ def _quantity_class(name: str) -> str:
         if name.endswith(measure):
             return f"IfcQuantity{measure}"
     return "IfcQuantityLength"
-
-
-def _plain(text: str) -> str:
-    """Return a text as the header of a file may hold it."""
-    return text.encode("ascii", "replace").decode()

@@ -113,7 +113,7 @@ class ModelOrigin:
     version : str
         Of the code.
     t_ns : int
-        When the last scan was taken, Unix time.
+        When the last scan was taken, Unix time; 0 where its clock was not set.
     site : Site
     locale : Locale
         How sizes are written in names.

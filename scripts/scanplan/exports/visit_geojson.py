@@ -1,14 +1,17 @@
-"""The next visit as GeoJSON, in the local metres of the survey."""
+"""The next visit as GeoJSON, placed as the plan's."""
 
 import numpy as np
 import shapely
 
-from scanplan.exports.geojson import Feature, format_collection, make_feature
+from scanplan.exports.geojson import Feature, format_collection, make_feature, state_system
+from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.types import Array, Columns
 from scanplan.visit.next_visit import NextVisit
 
 
-def format_visit(name: str, visit: NextVisit, summary: str) -> str:
+def format_visit(
+    name: str, visit: NextVisit, summary: str, site: Site = NOWHERE, scale: float = 1.0
+) -> str:
     """Return a visit as the text of a GeoJSON FeatureCollection, one feature a line.
 
     Parameters
@@ -17,20 +20,35 @@ def format_visit(name: str, visit: NextVisit, summary: str) -> str:
         The dataset's.
     summary : str
         In words; a member of the collection, also where there is no feature.
+    site : Site
+        Where the map lies: coordinates are in its system, the map's where it is in none.
+    scale : float
+        By which the map is multiplied before.
 
     Returns
     -------
     str
         Features are, by `feature`: standpoint (Point), way (LineString to a standpoint) and
-        question (MultiLineString), with the columns of their tables, null where not known.
+        question (MultiLineString), with the columns of their tables, null where not known: these
+        are in the map's frame, which robots drive in.
     """
     places = np.column_stack([visit.standpoints["x_m"], visit.standpoints["y_m"]])
+    of_features = (
+        ("standpoint", visit.standpoints, np.asarray(shapely.points(places), object)),
+        ("way", visit.standpoints, shapely.from_wkb(visit.standpoints["geometry"])),
+        ("question", visit.questions, shapely.from_wkb(visit.questions["geometry"])),
+    )
     features = [
-        *_features("standpoint", visit.standpoints, np.asarray(shapely.points(places))),
-        *_features("way", visit.standpoints, shapely.from_wkb(visit.standpoints["geometry"])),
-        *_features("question", visit.questions, shapely.from_wkb(visit.questions["geometry"])),
+        feature
+        for what, columns, shapes in of_features
+        for feature in _features(what, columns, site.place_shapes(_enlarge(shapes, scale)))
     ]
-    return format_collection(f"{name}, next visit", features, summary=summary)
+    system = state_system(site)
+    return format_collection(f"{name}, next visit", features, summary=summary, **system)
+
+
+def _enlarge(shapes: Array, scale: float) -> Array:
+    return np.asarray(shapely.transform(shapes, lambda xy_m: scale * xy_m), object)
 
 
 def _features(what: str, columns: Columns, shapes: Array) -> list[Feature]:

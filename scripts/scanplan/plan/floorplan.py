@@ -89,11 +89,13 @@ class GeoReference:
         The direction of the map's x axis in it, counter-clockwise from east.
     residual_m : float
         Root of the mean square distance of the reference points after it.
-    control_off_m, check_off_m : sequence of float
-        Distance of each of them, and of each point that was not used for it.
+    control_off_m, check_off_m : sequence of (str, float)
+        Name and distance of each of them, and of each point that was not used for it.
     fits_mirrored : bool
         Whether a mirror image of the map would agree with all of them as well: then no residual
         shows exchanged axes.
+    faults : sequence of str
+        A line on each point that is off by more than chance.
     """
 
     crs: str
@@ -101,9 +103,17 @@ class GeoReference:
     north_m: float
     rotation_rad: float
     residual_m: float
-    control_off_m: Sequence[float] = ()
-    check_off_m: Sequence[float] = ()
+    control_off_m: Sequence[tuple[str, float]] = ()
+    check_off_m: Sequence[tuple[str, float]] = ()
     fits_mirrored: bool = False
+    faults: Sequence[str] = ()
+
+    @property
+    def check_rms_m(self) -> float:
+        """Root of the mean square distance of the check points; NaN of none."""
+        if not self.check_off_m:
+            return float("nan")
+        return float(np.sqrt(np.mean([off_m**2 for _, off_m in self.check_off_m])))
 
 
 @dataclass(frozen=True)

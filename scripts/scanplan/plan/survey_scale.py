@@ -14,7 +14,7 @@ _LEAST_MEASURED = 2
 """Lengths: one that is off is a wall that is drawn wrong as well as a scale."""
 _MOST_OFF = 0.05
 """Of a factor: no range-finder is off by more; lengths are in other units, or taped elsewhere."""
-_PROJECTION = 0.001
+PROJECTION = 0.001
 """ASSUME by what a projected system stretches lengths: UTM by 0.0004, others up to this."""
 _POINT_M = 0.1
 """ASSUME of a reference point without a standard deviation: clicked by hand on a plan."""
@@ -82,7 +82,40 @@ class PlacedPoints:
         """
         around, outside = self._around()
         weights = self.sigma_m**-2
-        return complex(np.sum(weights * np.conj(around) * outside) / self._information)
+        return complex(np.sum(weights * np.conj(around) * outside) / self.information)
+
+    def fit_motion(self, scale: float = 1.0) -> tuple[FloatArray, FloatArray]:
+        """Return the turn (2, 2) and the shift (2,) that lay the map onto points outside.
+
+        By least squares, each point by its weight; the turn has the scale that is given.
+        """
+        angle_rad = np.angle(self.fit_similarity())
+        cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+        turn = scale * np.array([[cos, -sin], [sin, cos]])
+        inside_m, outside_m = (
+            np.average(of_m, axis=0, weights=self.sigma_m**-2)
+            for of_m in (self.inside_m, self.outside_m)
+        )
+        return turn, outside_m - turn @ inside_m
+
+    def take(self, rows: Sequence[int]) -> "PlacedPoints":
+        """Return some of them."""
+        chosen = np.asarray(rows, int)
+        return PlacedPoints(self.inside_m[chosen], self.outside_m[chosen], self.sigma_m[chosen])
+
+    def join(self, others: "PlacedPoints") -> "PlacedPoints":
+        """Return them and others behind."""
+        return PlacedPoints(
+            np.concatenate([self.inside_m, others.inside_m]),
+            np.concatenate([self.outside_m, others.outside_m]),
+            np.concatenate([self.sigma_m, others.sigma_m]),
+        )
+
+    @property
+    def information(self) -> float:
+        """What they say of the direction together: the inverse of its variance, in radians."""
+        around, _ = self._around()
+        return float(np.sum(np.abs(around) ** 2 / self.sigma_m**2))
 
     def fit_scale(self) -> tuple[float, float]:
         """Return the scale by the points alone, and its variance.
@@ -94,7 +127,7 @@ class PlacedPoints:
         chi2 = float(np.sum(np.abs(outside - fitted * around) ** 2 / self.sigma_m**2))
         n_spare = 2 * len(around) - 4  # a similarity has four parameters
         spread = max(1.0, chi2 / n_spare) if n_spare else 1.0
-        return abs(fitted), spread / self._information + _PROJECTION**2
+        return abs(fitted), spread / self.information + PROJECTION**2
 
     def _around(self) -> tuple[FloatArray, FloatArray]:
         """Return places inside and outside (n,) about their means, as complex numbers."""
@@ -104,11 +137,6 @@ class PlacedPoints:
             for of_m in (self.inside_m, self.outside_m)
         )
         return inside, outside
-
-    @property
-    def _information(self) -> float:
-        around, _ = self._around()
-        return float(np.sum(np.abs(around) ** 2 / self.sigma_m**2))
 
 
 def fit_scale(

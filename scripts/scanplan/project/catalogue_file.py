@@ -24,6 +24,8 @@ _MOST = 200
 """Sizes of a list: more than any maker's."""
 _ENTRY = {"name", "size_m"}
 _SYSTEM = {"system", *_LIMITS_M}
+_PUBLISHED = ("source", "edition")
+"""What a system may state: who publishes it, and which edition the codes are of."""
 _REMEDY = "see config/catalogue.yaml"
 
 
@@ -34,8 +36,9 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     -------
     dict
         `walls`, `doors` and `windows`, each a dict of name to size in metres; `facade_m`;
-        `classification`, the name of a `system` and the code of each list, empty of none; `codes`
-        of entries that have their own, of each list by their names.
+        `classification`, the name of a `system` and the code of each list, its `source` and
+        `edition` where it has them, and the `titles` of codes, empty of none; `codes` of entries
+        that have their own, of each list by their names.
 
     Raises
     ------
@@ -58,12 +61,24 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     }
 
 
-def _check_classification(place: str, given: object) -> dict[str, str]:
+def _check_classification(place: str, given: object) -> dict[str, Any]:
     if given is None:
         return {}
-    if not isinstance(given, dict) or set(given) != _SYSTEM:
+    if not isinstance(given, dict) or set(given) - {*_PUBLISHED, "titles"} != _SYSTEM:
         raise StageError(f"{place} has not the keys {', '.join(sorted(_SYSTEM))}; {_REMEDY}")
-    return {key: texts.check_text(f"{place}: {key}", given[key]) for key in sorted(_SYSTEM)}
+    titles = given.get("titles", {})
+    if not isinstance(titles, dict) or len(titles) > _MOST:
+        raise StageError(f"{place}: titles are no `CODE: title` of at most {_MOST}; {_REMEDY}")
+    stated = [key for key in (*sorted(_SYSTEM), *_PUBLISHED) if key in given]
+    read: dict[str, Any] = {k: texts.check_text(f"{place}: {k}", given[k]) for k in stated}
+    return read | {
+        "titles": {
+            texts.check_text(f"{place}: titles", code): texts.check_text(
+                f"{place}: titles, {code}", title
+            )
+            for code, title in titles.items()
+        }
+    }
 
 
 def _check_sizes(place: str, kind: str, entries: object, codes: dict[str, str]) -> dict[str, float]:

@@ -42,8 +42,8 @@ _KEYS = {
     ("furniture", "change"): (("at",), ("kind", "outline")),
     ("furniture", "remove"): (("at",), ()),
     ("length", "add"): (("line", "length_m"), ("sigma_m",)),
-    ("reference_point", "add"): (("at", "world", "crs"), ("sigma_m",)),
-    ("check_point", "add"): (("at", "world", "crs"), ()),
+    ("reference_point", "add"): (("at", "world", "crs"), ("name", "sigma_m")),
+    ("check_point", "add"): (("at", "world", "crs"), ("name", "sigma_m")),
 }
 """What may be done to an element: the keys that such an entry has, and those that it may have; of a
 change it has one at least."""
@@ -94,7 +94,9 @@ class Correction:
         Ends of what is added or taped, of where an element is moved to, or of what parts a room.
     kind : str
         Of an opening or a piece of furniture, or what something is that is no wall.
-    name, number, use : str
+    name : str
+        Of a room or a point.
+    number, use : str
         Of a room.
     swing_m : (float, float) or None
         A place beside a door, on the side that it opens to, nearer to its hinges.
@@ -113,7 +115,7 @@ class Correction:
     length_m : float or None
         Taped between the ends of `line_m`.
     sigma_m : float or None
-        Standard deviation of what was taped, or of a reference point's place, each coordinate.
+        Standard deviation of what was taped, or of a point's place, each coordinate.
     when, by : str
         The moment at which it was said, and who said it; empty where not known.
     """

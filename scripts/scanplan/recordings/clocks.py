@@ -49,6 +49,20 @@ def state_date(t_ns: int, form: str = "%Y-%m-%d") -> str:
     return date.strftime(form) if date else "not known, clock not set"
 
 
+def end_of_survey_ns(t_ns: IntArray) -> int:
+    """Return the last of a survey's stamps; 0, where time begins, if its clock was not set.
+
+    What files have to state where their format cannot leave the date out.
+
+    Parameters
+    ----------
+    t_ns : (n,) int64
+    """
+    if len(t_ns) == 0 or read_date(int(t_ns.min())) is None:
+        return 0
+    return int(t_ns.max())
+
+
 def describe_gaps(starts: Sequence[tuple[FilePath, int]]) -> list[str]:
     """Return whether recordings of one survey lie more than a day apart, as a sentence.
 

@@ -79,8 +79,8 @@ def state_lengths(plan: floorplan.FloorPlan) -> str:
 def state_reference(reference: floorplan.GeoReference) -> str:
     """Return how far each control and each check point is off where a plan is laid onto Earth."""
 
-    def listed(off_m: Sequence[float]) -> str:
-        return ", ".join(f"{off:.3f}" for off in off_m)
+    def listed(off_m: Sequence[tuple[str, float]]) -> str:
+        return ", ".join(f"{name} {off:.3f}" for name, off in off_m)
 
     controls = floorplan.say_count(len(reference.control_off_m), "control point")
     parts = [
@@ -90,6 +90,8 @@ def state_reference(reference: floorplan.GeoReference) -> str:
     if reference.check_off_m:
         counted = floorplan.say_count(len(reference.check_off_m), "check point")
         parts.append(f"{counted}, off by {listed(reference.check_off_m)} m")
+        parts.append(f"their root mean square is {reference.check_rms_m:.3f} m")
+    parts += reference.faults
     if reference.fits_mirrored:
         parts.append("exchanged axes would not show: add a check point off the points' line")
     return "; ".join(parts)

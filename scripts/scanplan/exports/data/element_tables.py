@@ -24,23 +24,27 @@ Rows = dict[str, list[Any]]
 """Values by column, None where not known."""
 
 
-def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
+def tabulate_elements(
+    plan: FloorPlan, ids: ElementIds, nominal_m: Mapping[int, float] | None = None
+) -> dict[str, Rows]:
     """Return walls, openings and rooms as rows.
 
     Parameters
     ----------
     ids : dict of str to sequence of str
         See `element_ids.ElementIds`.
+    nominal_m : dict of int to float, optional
+        Widths of the catalogue, see `nominal_widths.find_nominal_widths`.
 
     Returns
     -------
     dict of str to dict of str to list
         By `walls`, `openings` and `rooms`: the columns of the plan's tables but for geometry, with
-        `global_id` as in the building model; walls also `height_m` and `external`, openings and
-        rooms the names of rooms; rooms `height_m`, where the ceiling was seen,
-        `least_height_m`, as high as anything was, `net_area_m2`, less what columns stand on, and
-        how many doors and passages they have, and how wide the widest is. Numbers are Python's;
-        None where not known, or for no wall or room.
+        `global_id` as in the building model; walls also `height_m` and `external`, openings
+        `nominal_width_m` and, as rooms, the names of rooms; rooms `height_m`, where the ceiling was
+        seen, `least_height_m`, as high as anything was, `net_area_m2`, less what columns stand on,
+        how many doors they have, how many doors and passages, and how wide the widest is. Numbers
+        are Python's; None where not known, or for no wall or room.
     """
     names = dict(zip(plan.rooms["room"].tolist(), plan.room_labels, strict=True))
     walls = _plain(plan.walls, ids["wall"])
@@ -48,6 +52,7 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     walls["height_m"] = np.round(plan.heights_m, 4).tolist()
     walls["external"] = envelope.find_external_walls(plan).tolist()
     openings = _plain(plan.openings, ids["opening"])
+    openings["nominal_width_m"] = [(nominal_m or {}).get(o) for o in openings["opening"]]
     for side in ("a", "b"):
         openings[f"room_{side}_name"] = [names.get(room) for room in openings[f"room_{side}"]]
     rooms = _plain(plan.rooms, ids["room"])
@@ -57,7 +62,9 @@ def tabulate_elements(plan: FloorPlan, ids: ElementIds) -> dict[str, Rows]:
     rooms["height_m"] = [height_m if is_ceiling else None] * len(plan.room_names)
     rooms["least_height_m"] = [height_m] * len(plan.room_names)
     rooms["net_area_m2"] = np.round(_measure_net_m2(plan), 4).tolist()
-    ways_m = [_list_ways_m(plan, room) for room in plan.rooms["room"].tolist()]
+    numbers = plan.rooms["room"].tolist()
+    ways_m = [_list_widths_m(plan, room, WAYS) for room in numbers]
+    rooms["n_doors"] = [len(_list_widths_m(plan, room, ("door",))) for room in numbers]
     rooms["n_ways"] = [len(widths_m) for widths_m in ways_m]
     rooms["widest_way_m"] = [_known("width_m", max(w, default=np.nan)) for w in ways_m]
     return {"walls": walls, "openings": openings, "rooms": rooms}
@@ -73,10 +80,10 @@ def _measure_net_m2(plan: FloorPlan) -> FloatArray:
     return np.asarray(plan.rooms["area_m2"], float) - taken_m2
 
 
-def _list_ways_m(plan: FloorPlan, room: int) -> list[float]:
-    """Return how wide the doors and passages of a room are."""
+def _list_widths_m(plan: FloorPlan, room: int, types: Sequence[str]) -> list[float]:
+    """Return how wide the openings of a room of some types are."""
     openings = plan.openings
-    is_of = np.isin(openings["type"], WAYS)
+    is_of = np.isin(openings["type"], types)
     is_of &= (openings["room_a"] == room) | (openings["room_b"] == room)
     return np.asarray(openings["width_m"], float)[is_of].tolist()
 

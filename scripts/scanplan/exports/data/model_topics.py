@@ -37,6 +37,8 @@ class Topic:
     labels : sequence of str
     is_cut : bool
         Whether the view leaves out what is above the place.
+    model : str
+        Name of the file that the element is in; empty where none is stated.
     """
 
     key: str
@@ -47,6 +49,7 @@ class Topic:
     place_m: tuple[float, float, float]
     labels: Sequence[str] = ()
     is_cut: bool = False
+    model: str = ""
 
 
 def format_topics(name: str, topics: Sequence[Topic], t_ns: int, author: str = "") -> bytes:
@@ -78,6 +81,7 @@ def format_topics(name: str, topics: Sequence[Topic], t_ns: int, author: str = "
         view = _identify(f"{folder}/view")
         files[f"{folder}/markup.bcf"] = _node(
             "Markup",
+            *_name_model(topic),
             _node(
                 "Topic",
                 _node("Title", topic.title),
@@ -99,6 +103,13 @@ def format_topics(name: str, topics: Sequence[Topic], t_ns: int, author: str = "
             text = ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
             archive.writestr(zipfile.ZipInfo(path, _LONG_AGO), text, zipfile.ZIP_DEFLATED)
     return packed.getvalue()
+
+
+def _name_model(topic: Topic) -> list[ElementTree.Element]:
+    """Return the header that says in which file the element is, which lies beside the topics."""
+    if not topic.model:
+        return []
+    return [_node("Header", _node("File", _node("Filename", topic.model), isExternal="true"))]
 
 
 def _look_at(topic: Topic, guid: str) -> ElementTree.Element:

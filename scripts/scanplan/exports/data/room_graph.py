@@ -29,12 +29,13 @@ def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
     Returns
     -------
     str
-        `rooms` with outline and a place inside; `ways`, each with its ends, its width and a place
-        to go through in either room; `graph`, of each room by its number the ways and the rooms
-        that they lead to, null for one that no scan shows; `wheelchair`, which rooms are joined by
-        ways at least 0.9 m wide, the group with most floor first, which of them such a way leads to
-        from where no scan shows a room, and which ways are too narrow by so little that a tape must
-        tell. Metres in the map frame, as in `map.yaml`.
+        `rooms` with outline and a place inside; `ways`, each with its ends, its width as measured
+        and by the catalogue, null where it has none, and a place to go through in either room;
+        `graph`, of each room by its number the ways and the rooms that they lead to, null for one
+        that no scan shows; `wheelchair`, which rooms are joined by ways at least 0.9 m wide, by
+        the catalogue where that has their width, the group with most floor first, which of them
+        such a way leads to from where no scan shows a room, and which ways were measured too
+        narrow by so little that a tape must tell. Metres in the map frame, as in `map.yaml`.
     """
     ways = [_describe_way(plan, rows["openings"], row) for row in _list_ways(plan)]
     rooms = [_describe_room(plan, rows["rooms"], row) for row in range(len(plan.areas))]
@@ -42,6 +43,11 @@ def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
     content = {"name": plan.name, **_PLACE, "rooms": rooms, "ways": ways, "graph": graph}
     content["wheelchair"] = _find_accessible(rooms, ways)
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def is_wide(width_m: float, nominal_m: float | None) -> bool:
+    """Return whether a wheelchair passes a way, by the catalogue's width where there is one."""
+    return (width_m if nominal_m is None else nominal_m) >= WHEELCHAIR_M
 
 
 def _list_ways(plan: FloorPlan) -> list[int]:
@@ -76,6 +82,7 @@ def _describe_way(plan: FloorPlan, rows: Rows, row: int) -> dict[str, Any]:
         "type": rows["type"][row],
         "rooms": joined,
         "width_m": _round(rows["width_m"][row]),
+        "nominal_width_m": rows["nominal_width_m"][row],
         "ends_m": _round(line_m),
         "through_m": _round(through_m),
         **doubt,
@@ -125,7 +132,7 @@ def _list_exits(ways: list[dict[str, Any]], room: int) -> list[dict[str, Any]]:
 def _find_accessible(rooms: list[dict[str, Any]], ways: list[dict[str, Any]]) -> dict[str, Any]:
     """Return which rooms ways that are wide enough join, lead to from outside, and may be so."""
     areas_m2 = {room["room"]: room["area_m2"] for room in rooms}
-    wide = [way["rooms"] for way in ways if way["width_m"] >= WHEELCHAIR_M]
+    wide = [way["rooms"] for way in ways if is_wide(way["width_m"], way["nominal_width_m"])]
     group_of = {room: {room} for room in areas_m2}
     for one, other in wide:
         if one in group_of and other in group_of and group_of[one] is not group_of[other]:

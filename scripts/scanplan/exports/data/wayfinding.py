@@ -11,7 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports import geojson
 from scanplan.exports.data.element_tables import Rows
 from scanplan.exports.data.geopackage import Layer
-from scanplan.exports.data.room_graph import WHEELCHAIR_M
+from scanplan.exports.data.room_graph import is_wide
 from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
@@ -36,9 +36,9 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
     """Return one level, its units and its openings, with IMDF's names of properties.
 
     Rooms are units, of the category that a person gave as their use, else `room`; doors and
-    passages openings of category `pedestrian`, those at least 0.9 m wide with accessibility
-    `wheelchair`. The level is what rooms and walls cover. Ids follow from GlobalIds, which stand
-    beside them.
+    passages openings of category `pedestrian`, those that are wide enough (`room_graph.is_wide`)
+    with accessibility `wheelchair`. The level is what rooms and walls cover. Ids follow from
+    GlobalIds, which stand beside them.
 
     Parameters
     ----------
@@ -52,6 +52,8 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
     rooms, openings = rows["rooms"], rows["openings"]
     ways = np.flatnonzero(np.isin(plan.openings["type"], list(_DOORS))).tolist()
     widths_m = [openings["width_m"][way] for way in ways]
+    nominal_m = [openings["nominal_width_m"][way] for way in ways]
+    are_wide = map(is_wide, widths_m, nominal_m)
     units: Rows = {
         "id": [_identify(global_id) for global_id in rooms["global_id"]],
         "feature_type": ["unit"] * len(plan.areas),
@@ -67,8 +69,9 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
         "category": ["pedestrian"] * len(ways),
         "level_id": [level_id] * len(ways),
         "door_type": [_DOORS[openings["type"][way]] for way in ways],
-        "accessibility": ["wheelchair" if w >= WHEELCHAIR_M else None for w in widths_m],
+        "accessibility": ["wheelchair" if wide else None for wide in are_wide],
         "width_m": widths_m,
+        "nominal_width_m": nominal_m,
         "global_id": [openings["global_id"][way] for way in ways],
     }
     levels: Rows = {

@@ -139,9 +139,10 @@ def _name_opening(locale: Locale, storey: StoreyPlan, row: int) -> str:
     kind, width_m = columns["type"][row], float(columns["width_m"][row])
     joined = storey.name_joined_rooms(row)
     if len(joined) == 1 and kind in WAYS and storey.leads_outside(row):
-        joined = [*joined, "outside"]
-    words = [f"{kind.capitalize()} {columns['opening'][row]}", locale.measure(width_m)]
-    return ", ".join([*words, *filter(None, [" to ".join(joined)])])
+        joined = [*joined, locale.say("outside")]
+    noun = locale.say(kind).capitalize()
+    words = [f"{noun} {columns['opening'][row]}", locale.measure(width_m)]
+    return ", ".join([*words, *filter(None, [f" {locale.say('to')} ".join(joined)])])
 
 
 def _add_void(
@@ -257,7 +258,6 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
         attributes = {"PredefinedType": "DOOR" if of_doors else "WINDOW"}
         attributes |= _state_operation(operation) if of_doors else {"PartitioningType": operation}
         product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)
-        system, code = storey.find_code(_LISTED_AS.get(kind, "windows"), listed)
-        if code:
-            model.classify([product_type, *fillings], system, code)
+        if code := storey.find_code(_LISTED_AS.get(kind, "windows"), listed):
+            model.classify([product_type, *fillings], code)
         model.join("IfcRelDefinesByType", fillings, RelatingType=product_type)

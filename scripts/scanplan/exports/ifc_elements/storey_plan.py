@@ -9,6 +9,7 @@ import numpy as np
 
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.drafting.regular_plan import MEASURED
+from scanplan.exports.ifc_model import ClassCode
 from scanplan.exports.sheet.openings import Swing, find_swings
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns
@@ -64,13 +65,15 @@ class StoreyPlan:
                 return name, nominal_m
         return "", max(round(200 * float(size_m)), 1) / 200
 
-    def find_code(self, kind: str, name: str) -> tuple[str, str]:
-        """Return the system and the code of a type of a list of the catalogue; empty of none."""
+    def find_code(self, kind: str, name: str) -> ClassCode | None:
+        """Return the code of a type of a list of the catalogue; None of none."""
         catalogue = self.catalogue or {}
         system = catalogue.get("classification", {})
         if not system:
-            return "", ""
-        return system["system"], catalogue["codes"][kind].get(name, system[kind])
+            return None
+        code = catalogue["codes"][kind].get(name, system[kind])
+        published = (system.get("source"), system.get("edition"))
+        return ClassCode(system["system"], code, system["titles"].get(code), *published)
 
     def leads_outside(self, opening: int) -> bool:
         """Return whether the wall that an opening is in is external."""

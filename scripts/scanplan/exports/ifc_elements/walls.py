@@ -66,14 +66,14 @@ def _name_wall(locale: Locale, storey: StoreyPlan, row: int) -> str:
     thickness_m = float(plan.walls["thickness_m"][row])
     radius_m = float(plan.walls["arc_radius_m"][row])
     words = [
-        f"Wall {plan.walls['wall'][row]}",
+        f"{locale.say('wall').capitalize()} {plan.walls['wall'][row]}",
         "exterior" if storey.external[row] else "interior",
         locale.size(thickness_m) if storey.is_thickness_measured[row] else "thickness assumed",
         f"radius {locale.measure(radius_m)}" if plan.wall_shapes.is_bent[row] else "",
         f"{locale.measure(float(plan.heights_m[row]))} high" if plan.low[row] else "",
         "inferred" if plan.walls["state"][row] == "inferred" else "",
     ]
-    return ", ".join(filter(None, words))
+    return ", ".join(map(locale.say, filter(None, words)))
 
 
 def _measure_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:
@@ -183,9 +183,8 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
         layers = model.new("IfcMaterialLayerSet", [layer], name)
         predefined = _STANDARD if model.is_editable else "NOTDEFINED"
         wall_type = model.root("IfcWallType", (name,), Name=name, PredefinedType=predefined)
-        system, code = storey.find_code("walls", listed)
-        if code:
-            model.classify([wall_type, *(walls[row] for row in rows)], system, code)
+        if code := storey.find_code("walls", listed):
+            model.classify([wall_type, *(walls[row] for row in rows)], code)
         model.join("IfcRelAssociatesMaterial", [wall_type], RelatingMaterial=layers)
         model.join("IfcRelDefinesByType", [walls[row] for row in rows], RelatingType=wall_type)
         for row in rows:

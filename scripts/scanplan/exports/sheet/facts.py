@@ -113,4 +113,7 @@ def state_frame(site: Site, measured: GeoReference | None, locale: Locale = ENGL
     place = f"{origin}, x axis {site.turn_deg:.4f}° from E, scale 1"
     if measured is None:
         return f"{site.crs}: {place}"
-    return f"{site.crs}: {place}; residual {locale.deviation(measured.residual_m)}"
+    residual = f"residual {locale.deviation(measured.residual_m)}"
+    if measured.check_off_m:
+        residual += f"; checks {locale.deviation(measured.check_rms_m)}"
+    return f"{site.crs}: {place}; {residual}"

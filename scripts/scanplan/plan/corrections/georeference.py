@@ -5,10 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from scanplan.plan.corrections import point_odds
 from scanplan.plan.floorplan import GeoReference
 from scanplan.plan.survey_scale import PlacedPoints
 from scanplan.project import reference_points
 from scanplan.project.corrections_file import Correction
+from scanplan.types import FloatArray
 
 
 def read_points(points: Sequence[Correction]) -> PlacedPoints:
@@ -39,14 +41,7 @@ def fit_reference(
     if not points:
         return None
     placed = read_points(points)
-    rotation_rad = float(np.angle(placed.fit_similarity()))
-    cos, sin = np.cos(rotation_rad), np.sin(rotation_rad)
-    turn = scale * np.array([[cos, -sin], [sin, cos]])
-    weights = placed.sigma_m**-2
-    inside_m, outside_m = (
-        np.average(of_m, axis=0, weights=weights) for of_m in (placed.inside_m, placed.outside_m)
-    )
-    origin_m = outside_m - turn @ inside_m
+    turn, origin_m = placed.fit_motion(scale)
     control_off_m, check_off_m = (
         np.linalg.norm(of.outside_m - (of.inside_m @ turn.T + origin_m), axis=1)
         for of in (placed, read_points(checks))
@@ -57,15 +52,44 @@ def fit_reference(
         points[0].crs,
         east_m,
         north_m,
-        rotation_rad,
+        float(np.arctan2(turn[1, 0], turn[0, 0])),
         residual_m,
-        control_off_m.tolist(),
-        check_off_m.tolist(),
+        _name_each(points, control_off_m),
+        _name_each(checks, check_off_m),
         reference_points.fits_mirrored(
             [point.at_m for point in (*points, *checks)],
             [point.world_m or point.at_m for point in (*points, *checks)],
         ),
+        _list_faults(points, checks, scale),
     )
+
+
+def _list_faults(
+    points: Sequence[Correction], checks: Sequence[Correction], scale: float
+) -> list[str]:
+    """Return a line on each point that is off by more than chance: distance, limit and remedy."""
+    placed, held = read_points(points), read_points(checks)
+    told = []
+    for point in point_odds.find_outliers(placed, scale):
+        remedy = "any of three may be the one that is off: add a fourth"
+        if point.n_others > 2:
+            remedy = "measure it again, leave it out, or state its `sigma_m`"
+        told.append(f"{_name(points[point.row])}: {point.fault}; {remedy}")
+    for point in point_odds.find_off_checks(placed, held, scale):
+        remedy = "measure it and these again, or state its `sigma_m`"
+        told.append(f"{_name(checks[point.row])}: {point.fault}; {remedy}")
+    return told
+
+
+def _name(point: Correction) -> str:
+    """Return the entry of a point, and its name where it has one."""
+    entry = point.entry.rpartition(": ")[2]
+    return f"{entry} ({point.name})" if point.name else entry
+
+
+def _name_each(points: Sequence[Correction], off_m: FloatArray) -> list[tuple[str, float]]:
+    names = [point.name or _name(point) for point in points]
+    return list(zip(names, off_m.tolist(), strict=True))
 
 
 def format_reference(reference: GeoReference) -> str:
