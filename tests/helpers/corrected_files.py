@@ -62,11 +62,13 @@ def exported(folder, corrections=(), name="office", **settings):
     return files
 
 
-def pdf_texts(content):
+def pdf_texts(pdf):
     """The words that a PDF of ours shows: two bytes a character, parted where letters are moved."""
-    for stream in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", content, re.DOTALL):
+    for stream in re.findall(rb"stream\r?\n(.*?)\r?\nendstream", pdf, re.DOTALL):
         with suppress(zlib.error):
-            for word in re.findall(rb"\[ (.*?) \]\s+TJ", zlib.decompress(stream), re.DOTALL):
+            # the last byte of what is packed may be read as the end of a line
+            content = zlib.decompressobj().decompress(stream)
+            for word in re.findall(rb"\[ (.*?) \]\s+TJ", content, re.DOTALL):
                 parts = re.findall(rb"\(((?:\\.|[^\\()])*)\)", word, re.DOTALL)
                 yield re.sub(rb"\\(.)", rb"\1", b"".join(parts)).decode("utf-16-be")
 
