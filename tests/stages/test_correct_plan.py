@@ -336,6 +336,20 @@ def test_a_wall_seen_from_one_side_leaves_rooms_closed_however_thick_it_is(plan,
     assert found.walls["thickness_m"][1] == thickness_m and found.rooms["closed"].all()
 
 
+def test_a_room_keeps_its_ground_beside_a_pocket_that_a_wall_parts_from_it(plan):
+    walls = MADE["walls"]()
+    front = {name: values[5:] for name, values in walls.items()} | {"wall": np.array([6], np.int32)}
+    front |= {"x0_m": [1.3], "y0_m": [-0.1], "x1_m": [1.3], "y1_m": [3.1], "thickness_m": [0.1]}
+    grown = {n: np.append(v, np.asarray(front[n], v.dtype)) for n, v in walls.items()}
+    tables.write_table(plan["walls"], planning.TABLES["walls"], grown)
+    rooms = MADE["rooms"]()
+    rooms["geometry"][0] = shapely.to_wkb(shapely.box(0.6, 0, 1.25, 3))
+    tables.write_table(plan["rooms"], planning.TABLES["rooms"], rooms)
+    found = corrected(plan, {"element": "wall", "at": [1.3, 1.0], "thickness_m": 0.08})
+    # it follows the side of the wall
+    assert found.areas[0].symmetric_difference(shapely.box(0.6, 0, 1.26, 3)).area < 0.05
+
+
 @pytest.mark.parametrize("said", [{"kind": "furniture"}, {"action": "remove"}])
 def test_the_ground_behind_a_front_that_is_none_is_its_rooms(plan, said):
     walls = MADE["walls"]()

@@ -54,6 +54,17 @@ def test_a_round_column_is_drawn_round():
     assert told.outline.symmetric_difference(disc).area < 0.02 * disc.area
 
 
+@pytest.mark.parametrize("turn_deg", [0, 20, 45])
+def test_a_column_that_two_sides_are_seen_of_is_square(turn_deg):
+    square = affinity.rotate(box(2.8, 1.8, 3.2, 2.2), turn_deg, origin=(3, 2))
+    corners = shapely.get_coordinates(square)
+    sides = shapely.LineString(corners[:3]).buffer(0.02)
+    points = returns(square)
+    told = tell(square, points[shapely.contains_xy(sides, points[:, :2])])
+    assert told.kind == COLUMN
+    assert told.outline.symmetric_difference(square).area < 0.02
+
+
 @pytest.mark.parametrize(("n_through", "kind"), [(0, COLUMN), (12, PIECE)])
 def test_what_a_mirror_shows_is_none_where_other_rays_go_through(n_through, kind):
     square = box(2.8, 1.8, 3.2, 2.2)

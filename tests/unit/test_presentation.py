@@ -59,6 +59,22 @@ def test_what_may_be_furniture_is_an_outline_but_the_facade(wall, is_outline):
     assert (meaning in [word.text for word in paper_words(sheet)]) == is_outline
 
 
+def test_a_line_that_parts_rooms_at_one_edge_is_drawn():
+    halves = [shapely.box(0, 0, 2, 3), shapely.box(2, 0, 4, 3), floorplan_making.ROOMS[1]]
+    line = ((2.0, 0.0, 2.0, 3.0), -1, "passage", np.nan, np.nan, 0, 1)
+    openings = floorplan_making.openings([*floorplan_making.OPENINGS, line])
+    sheet = composed(rooms=floorplan_making.rooms(halves), openings=openings)
+    drawn = [symbol.ends_m for symbol in sheet.symbols if symbol.kind == "parting"]
+    assert len(drawn) == 1 and np.hypot(*(drawn[0][1] - drawn[0][0])) == pytest.approx(3.0)
+
+
+def test_overall_lengths_reach_to_the_outer_side_of_thick_walls():
+    walls = [*floorplan_making.WALLS]
+    walls[4] = ((-0.3, 3.1, -0.3, -0.1), 0.6, 4, -1, "observed")
+    sheet = composed(walls=floorplan_making.walls(walls))
+    assert "7.70" in {dimension.word.text for dimension in sheet.dimensions}
+
+
 def test_walls_are_as_black_in_cad_as_on_paper():
     document = ezdxf.filemanagement.read(io.StringIO(dxf.format_dxf(composed())))
     assert {hatch.dxf.color for hatch in document.modelspace().query("HATCH")} == {7}

@@ -253,10 +253,14 @@ def test_an_opening_is_in_its_wall_and_of_a_size_of_the_catalogue():
     )
     assert regular.openings["width_m"] == pytest.approx([0.9, 1.1])
     assert drafted.width_m == pytest.approx(0.05)
-    # no lintel was seen: in a plane doors are less too narrow
+    # no lintel was seen: in a plane doors are not too narrow, and widths are finer
     openings["lintel_m"][:] = np.nan
     flat, _ = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
-    assert flat.openings["width_m"] == pytest.approx([0.9, 1.06])
+    assert flat.openings["width_m"] == pytest.approx([0.9, 1.05])
+    # what an even width would change by more than the tolerance has the next narrower one
+    openings["lintel_m"][:], openings["y1_m"][1], openings["width_m"][1] = 2.0, 2.296, 1.296
+    other, _ = draft_plan(floorplan_making.plan(openings=openings), SETTINGS)
+    assert other.openings["width_m"] == pytest.approx([0.9, 1.3])
 
 
 def test_short_pieces_of_wall_at_no_room_are_left_out_and_counted():
@@ -319,6 +323,18 @@ def test_the_same_plan_gives_the_same_bytes():
     for table in ("walls", "openings", "rooms", "faces"):
         for column, values in getattr(one, table).items():
             np.testing.assert_array_equal(values, getattr(other, table)[column])
+
+
+@pytest.mark.parametrize(
+    ("said", "is_kept"), [("changed by hand, A. Bee", True), ("added by hand", True),
+                          ("kept by hand", False), ("", False)])  # fmt: skip
+def test_a_size_that_a_person_stated_stays(said, is_kept):
+    walls, openings = floorplan_making.walls(), floorplan_making.openings()
+    walls["thickness_m"][5], walls["corrected"][5] = 0.112, said
+    openings["y1_m"][1], openings["width_m"][1], openings["corrected"][1] = 1.87, 0.87, said
+    regular, _ = draft_plan(floorplan_making.plan(walls=walls, openings=openings), SETTINGS)
+    assert regular.walls["thickness_m"][5] == pytest.approx(0.112 if is_kept else 0.1)
+    assert regular.openings["width_m"][1] == pytest.approx(0.87 if is_kept else 0.9)
 
 
 def test_openings_of_one_width_that_no_catalogue_has_are_drawn_alike():

@@ -15,7 +15,7 @@ from scanplan.types import FloatArray
 _PLACE = {"frame": "map", "unit": "m"}
 WHEELCHAIR_M = 0.9
 """Clear width of doors for wheelchairs (DIN 18040)."""
-_NARROWED_M = 0.05  # doors are seen too narrow, in the median of a survey by 1 to 6 cm
+_NARROWED_M = 0.05  # doors of a survey are seen too narrow by up to as much
 
 
 def format_room_graph(plan: FloorPlan, rows: dict[str, Rows]) -> str:
@@ -144,7 +144,12 @@ def _find_accessible(rooms: list[dict[str, Any]], ways: list[dict[str, Any]]) ->
     )
     entered = {room for ends in wide if None in ends for room in ends} & set(areas_m2)
     nearly_m = (WHEELCHAIR_M - _NARROWED_M, WHEELCHAIR_M)
-    to_tape = [way["opening"] for way in ways if nearly_m[0] <= way["width_m"] < nearly_m[1]]
+    to_tape = [
+        way["opening"]
+        for way in ways
+        if nearly_m[0] <= way["width_m"] < nearly_m[1]
+        and (way["nominal_width_m"] is None or is_wide(way["width_m"], way["nominal_width_m"]))
+    ]
     return {
         "least_width_m": WHEELCHAIR_M,
         "groups": ordered,

@@ -20,6 +20,7 @@ from scanplan.plan.floorplan import FloorPlan
 _NAMESPACE = uuid.UUID("0a1de2c4-7f39-4c55-8a0e-6d2b9c7e1f38")  # any, and always the same
 _DOORS = {"door": "unspecified", "passage": "open"}
 """IMDF's types of doors: how a leaf moves is in the building model."""
+_HAIR_M = 0.02
 _CATEGORIES = frozenset(
     (
         *("auditorium", "classroom", "conferenceroom", "elevator", "escalator", "foodservice"),
@@ -47,7 +48,10 @@ def imdf_layers(plan: FloorPlan, rows: Mapping[str, Rows], storey: str = "") -> 
     storey : str
         Name of the level, by default that of the plan.
     """
-    covered = shapely.get_parts(overlays.unite_areas([*plan.areas, *plan.bodies]))
+    # rooms end within millimetres of walls: what is left between them is no hole
+    built = overlays.unite_areas([*plan.areas, *plan.bodies])
+    grown = overlays.buffer_shapes(built, _HAIR_M, join_style="mitre")
+    covered = shapely.get_parts(overlays.buffer_shapes(grown, -_HAIR_M, join_style="mitre"))
     level_id = _identify(plan.name, "level")
     rooms, openings = rows["rooms"], rows["openings"]
     ways = np.flatnonzero(np.isin(plan.openings["type"], list(_DOORS))).tolist()

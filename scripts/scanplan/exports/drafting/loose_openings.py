@@ -25,7 +25,9 @@ def settle_loose(plan: FloorPlan) -> FloorPlan:
     """
     lines_m = floorplan.centrelines_m(plan.openings)
     is_loose = plan.hosts < 0
-    near = overlays.buffer_shapes(overlays.unite_areas(plan.areas).boundary, CORNER_M)
+    # of each room: two that share an edge are parted there
+    edges = overlays.buffer_shapes(shapely.boundary(plan.areas), CORNER_M)
+    near = overlays.unite_areas([*edges])
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
     is_drawn = ~is_loose | (shapely.length(along) > plan.openings["width_m"] / 2)
     is_drawn &= ~_find_doubles(plan, is_drawn)

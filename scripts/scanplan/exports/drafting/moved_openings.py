@@ -4,17 +4,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes
+from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes, find_stated
 from scanplan.plan.floorplan import centrelines_m, line_columns
 from scanplan.types import Columns, FloatArray, IntArray
 
 _SIGMA_M = 0.01  # of a width, by good scans
 _CHANGED_M = 0.03  # sizes are a decimetre apart: what is farther off is none of them
-_NARROWED_M = {"door": (0.01, 0.03)}
-# doors are seen narrower than they are, by what stands in them and by edges of jambs: in a plane,
-# and where rays show their lintel, too (medians of 16 and 26 drives of the bench's tuning half, and
-# of three published buildings); windows by 0
-_EVEN_M = (0.01, 0.05)  # what no catalogue has is drawn to: as fine as widths are known, likewise
+_NARROWED_M = {"door": 0.03}
+# doors whose lintel was seen are narrower than they are, by what stands in them and by edges of
+# jambs (median of 26 drives of the bench's tuning half), in a plane by none; windows neither
+_EVEN_M, _EVEN_IN_PLANE_M = 0.05, 0.01
+# to these what no catalogue has is drawn: as fine as widths are known
 _APART_M = 0.02  # between openings, and from the end of their wall: thinner piers are not built
 
 
@@ -29,7 +29,7 @@ def move_openings(
 
     One of nearly a size of the catalogue, or of a size that several others have, is as wide, about
     its middle, where it has room for it; another is of an even width. An empty list changes
-    nothing.
+    nothing, nor is what a person stated changed.
 
     Parameters
     ----------
@@ -50,9 +50,8 @@ def move_openings(
     for kind, sizes in sizes_m.items():
         rows = np.flatnonzero((openings["type"] == kind) & (hosts >= 0))
         allowed_m = min(tolerance_m, _CHANGED_M)
-        in_plane_m, in_space_m = _NARROWED_M.get(kind, (0.0, 0.0))
         is_in_space = np.isfinite(np.asarray(openings["lintel_m"][rows], float))
-        likely_m = widths_m[rows] + np.where(is_in_space, in_space_m, in_plane_m)
+        likely_m = widths_m[rows] + is_in_space * _NARROWED_M.get(kind, 0.0)
         nominal_m = choose_sizes(
             likely_m,
             np.full(len(rows), _SIGMA_M),
@@ -61,9 +60,12 @@ def move_openings(
             np.ones(len(rows)),
         )
         if sizes:
-            step_m = np.where(is_in_space, _EVEN_M[1], _EVEN_M[0])
+            step_m = np.where(is_in_space, _EVEN_M, _EVEN_IN_PLANE_M)
             even_m = step_m * np.round(likely_m / step_m)
+            is_far = np.round(even_m - widths_m[rows], 9) > tolerance_m
+            even_m = np.where(is_far, even_m - step_m, even_m)
             nominal_m = np.where(np.isnan(nominal_m), even_m, nominal_m)
+        nominal_m[find_stated(openings)[rows]] = np.nan
         is_wanted = np.round(np.abs(nominal_m - widths_m[rows]), 9) <= tolerance_m
         wanted_m[rows] = np.where(is_wanted, nominal_m, widths_m[rows])
     for wall in np.unique(hosts[hosts >= 0]).tolist():

@@ -188,7 +188,8 @@ def _find_built(plan: FloorPlan, is_measured: BoolArray, spans_m: FloatArray) ->
     assumed = overlays.buffer_shapes(floorplan.line_shapes(assumed_m), half_m, cap_style="square")
     built = overlays.subtract_areas(built, overlays.unite_areas([*assumed]))
     rooms = overlays.unite_areas(plan.areas)
-    near = overlays.buffer_shapes(rooms, CORNER_M, join_style="mitre")
+    thickest_m = np.nanmax(plan.walls["thickness_m"][is_measured], initial=CORNER_M)
+    near = overlays.buffer_shapes(rooms, thickest_m + CORNER_M, join_style="mitre")
     return overlays.intersect_areas(built, near)
 
 

@@ -12,7 +12,7 @@ from scanplan.exports.drafting.adjustment import adjust_walls
 from scanplan.exports.drafting.facades import find_facades, limit_backs, measure_reveals
 from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
-from scanplan.exports.drafting.nominal_sizes import choose_sizes
+from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_stated
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.square_columns import square_columns
@@ -114,6 +114,8 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     deep_m = np.array([reveals_m.get(wall, 0.0) for wall in plan.walls["wall"].tolist()])
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
+    nominal_m = np.where(find_stated(plan.walls), np.nan, wanted.nominal_m)
+    wanted = replace(wanted, nominal_m=nominal_m)
     adjusted = adjust_walls(walls, wanted)
     moved = moved_walls.move_walls(walls, wanted, adjusted)
     grown_m = np.where(walls.is_thick, adjusted.grown_m, 0.0)

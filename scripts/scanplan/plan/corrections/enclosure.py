@@ -76,7 +76,8 @@ def follow_enclosure(
     opened: list[tuple[Row, float]] = []
     for room in rows.rooms:
         outline = shapely.from_wkb(room["geometry"])
-        bare_m = _measure_bare_m(outline, left, walled)
+        beside = overlays.buffer_shapes(outline, usual_m + 2 * _SLACK_M)
+        bare_m = _measure_bare_m(outline, overlays.intersect_areas(left, beside), walled)
         if bare_m > CORNER_M:
             room["closed"] = False
             opened.append((room, bare_m))
@@ -88,22 +89,26 @@ def follow_enclosure(
 
 def _join_pockets(rows: PlanRows, gone: BaseGeometry, after: BaseGeometry) -> None:
     """Give rooms the ground that walls and they enclose, where what parted it from them is gone."""
-    outlines = [shapely.from_wkb(room["geometry"]) for room in rows.rooms]
+    if gone.is_empty or not rows.rooms:
+        return
+    outlines = np.array([shapely.from_wkb(room["geometry"]) for room in rows.rooms], object)
     closed = overlays.buffer_shapes(overlays.unite_areas([after, *outlines]), _SLACK_M)
     holes = [shapely.Polygon(ring) for part in shapely.get_parts(closed) for ring in part.interiors]
-    for hole in holes if rows.rooms else []:
+    for hole in holes:
+        if hole.area > FURNITURE_M2 or hole.distance(gone) > 2 * _SLACK_M:
+            continue
         pocket = overlays.buffer_shapes(hole, 2 * _SLACK_M, join_style="mitre")
         pocket = overlays.subtract_areas(pocket, after)
         parted = overlays.intersect_areas(gone, pocket)
-        near = overlays.buffer_shapes(np.array(outlines, object), 2 * _SLACK_M)
+        near = overlays.buffer_shapes(outlines, 2 * _SLACK_M)
         beside_m2 = shapely.area(overlays.intersect_areas(near, parted))
         row = int(np.argmax(beside_m2))
-        if beside_m2[row] > 0 and hole.area <= FURNITURE_M2:
-            others = overlays.unite_areas(outlines[:row] + outlines[row + 1 :])
-            own = overlays.subtract_areas(pocket, others)
-            whole = overlays.unite_areas([outlines[row], own])
-            outlines[row] = max(shapely.get_parts(whole), key=lambda part: part.area)
-            rows.rooms[row] |= shape_columns(outlines[row])
+        others = overlays.unite_areas([*outlines[:row], *outlines[row + 1 :]])
+        whole = overlays.unite_areas([outlines[row], overlays.subtract_areas(pocket, others)])
+        # a wall between the two still stands where they are not one
+        if beside_m2[row] > 0 and isinstance(whole, shapely.Polygon):
+            outlines[row] = whole
+            rows.rooms[row] |= shape_columns(whole)
 
 
 def _measure_bare_m(outline: shapely.Polygon, left: BaseGeometry, walled: BaseGeometry) -> float:

@@ -27,6 +27,7 @@ from scanplan.store.schemas import COLUMN
 from scanplan.types import FloatArray, IntArray
 
 _AMID = 0.7  # of a diagonal: at corners rays go by
+_FEW_POINTS = 2000  # tell how a column is turned
 _QUARTER = 8  # sides of a quarter of a circle: within 2 mm of it where columns are 0.6 m wide
 
 
@@ -93,11 +94,10 @@ def find_column_faces(
         bool,
     )
     others = overlays.unite_areas([*strips[~is_short]])
+    taken = overlays.buffer_shapes(others, FACE_M)
 
     def is_side(wall: PlanWall) -> bool:
-        around = overlays.subtract_areas(
-            _ground_around(wall, max_width_m), overlays.buffer_shapes(others, FACE_M)
-        )
+        around = overlays.subtract_areas(_ground_around(wall, max_width_m), taken)
         if around.is_empty:
             return False
         outline = max(shapely.get_parts(around), key=lambda part: part.area)
@@ -198,7 +198,7 @@ def _fit_outline(xy_m: FloatArray, max_width_m: float, solid: BaseGeometry) -> P
 
 
 def _mean_square(off_m: FloatArray) -> float:
-    """Return the mean of squares of distances (n,), strays as far as others are at most."""
+    """Return the mean of squares of distances (n,): strays count as three times noise."""
     return float(np.mean(np.minimum(np.abs(off_m), 3 * NOISE_M) ** 2))
 
 
@@ -221,21 +221,35 @@ def _fit_all(xy_m: FloatArray) -> Circles | None:
 
 
 def _fit_rectangle(xy_m: FloatArray) -> Polygon:
-    """Return the least rectangle that most of points (n, 2) lie in, its sides amid those at each.
+    """Return the rectangle that points (n, 2) lie nearest to, its sides amid those at each.
 
-    Angles are tried in steps of a degree: over the width of a column, less than noise.
+    Of those that they lie as near to, the least. Angles are tried in steps of a degree: over the
+    width of a column, less than noise. Of a column that two sides are seen of, the rectangle along
+    its diagonal is no larger.
     """
-    share = (LOW_PERCENT, 100 - LOW_PERCENT)
+    some_m = xy_m[:: max(len(xy_m) // _FEW_POINTS, 1)]
     turns_rad = np.radians(np.arange(90))
-    extents_m = [np.ptp(np.percentile(_turned(xy_m, a), share, axis=0), axis=0) for a in turns_rad]
-    turn_rad = float(turns_rad[np.argmin(np.prod(extents_m, axis=1))])
+    own = [_turned(some_m, turn_rad) for turn_rad in turns_rad]
+    off_m2 = np.array([_mean_square(_far_from_box(own_m)) for own_m in own])
+    share = (LOW_PERCENT, 100 - LOW_PERCENT)
+    area_m2 = [np.prod(np.ptp(np.percentile(own_m, share, axis=0), axis=0)) for own_m in own]
+    is_near = off_m2 <= off_m2.min() + (NOISE_M / 10) ** 2
+    turn_rad = float(turns_rad[np.argmin(np.where(is_near, area_m2, np.inf))])
     own_m = _turned(xy_m, turn_rad)
-    low_m, high_m = np.percentile(own_m, share, axis=0)
+    low_m, high_m = np.percentile(own_m, (LOW_PERCENT, 100 - LOW_PERCENT), axis=0)
     low_x_m, low_y_m, high_x_m, high_y_m = (
         _side_m(own_m[:, axis], end_m[axis]) for end_m in (low_m, high_m) for axis in (0, 1)
     )
     box = shapely.box(low_x_m, low_y_m, high_x_m, high_y_m)
     return affinity.rotate(box, turn_rad, origin=(0, 0), use_radians=True)
+
+
+def _far_from_box(own_m: FloatArray) -> FloatArray:
+    """Return how far points (n, 2) lie from the upright rectangle that most of them lie in."""
+    low_m, high_m = np.percentile(own_m, (LOW_PERCENT, 100 - LOW_PERCENT), axis=0)
+    beyond_m = np.maximum(low_m - own_m, own_m - high_m)
+    outside_m = np.hypot(*np.maximum(beyond_m, 0).T)
+    return np.where((beyond_m <= 0).all(axis=1), -beyond_m.max(axis=1), outside_m)
 
 
 def _side_m(along_m: FloatArray, end_m: float) -> float:
