@@ -95,7 +95,15 @@ def export_files(
         locale=locale,
     )
     sizes = catalogue or read_catalogue(None)
-    regular = _draft_regular(drawn, settings["max_change_m"], sizes)
+
+    @cache
+    def draft() -> FloorPlan:
+        return _draft_regular(drawn, settings["max_change_m"], sizes)
+
+    @cache
+    def tabulate() -> Mapping[str, element_tables.Rows]:
+        nominal_m = nominal_widths.find_nominal_widths(draft(), sizes)
+        return element_tables.tabulate_elements(drawn, ids, nominal_m)
 
     def models() -> dict[str, str]:
         # to go on with first: what is left out of that is in the other
@@ -104,7 +112,7 @@ def export_files(
 
     writers: dict[str, Callable[[], str | bytes]] = {
         "ifc": cache(lambda: _format_ifc(drawn, ids, origin)),
-        "editable": cache(lambda: _format_editable(drawn, regular, ids, origin, sizes)),
+        "editable": cache(lambda: _format_editable(drawn, draft(), ids, origin, sizes)),
         "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin, models()),
         "openplan": lambda: _format_openplan(drawn, ids, origin),
         "glb": lambda: mesh.format_glb(drawn, ids, site),
@@ -116,13 +124,13 @@ def export_files(
         ("speed", grid_map.draw_speed, "raw"),
     ):
         writers |= _write_mask(mask, lambda draw=draw: draw(in_map, settings["map_cell_m"]), mode)
-    nominal_m = nominal_widths.find_nominal_widths(regular, sizes)
-    rows = element_tables.tabulate_elements(drawn, ids, nominal_m)
     for table in ("walls", "openings", "rooms"):
-        writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(rows[table])
+        writers[f"{table}_csv"] = lambda table=table: element_tables.format_csv(tabulate()[table])
     language = tag_language(settings["language"])
-    writers["imdf"] = lambda: wayfinding.format_imdf(drawn, rows, site, origin.storey, language)
-    writers["json"] = lambda: room_graph.format_room_graph(drawn, rows)
+    writers["imdf"] = lambda: wayfinding.format_imdf(
+        drawn, tabulate(), site, origin.storey, language
+    )
+    writers["json"] = lambda: room_graph.format_room_graph(drawn, dict(tabulate()))
     for what in [what for what in outputs if what in writers]:
         content = writers[what]()
         binary = content.encode() if isinstance(content, str) else content
@@ -131,8 +139,8 @@ def export_files(
         Path(file).unlink(missing_ok=True)
     if "gpkg" in outputs:
         factor = find_factor(drawn.scale)
-        layers = geopackage.plan_layers(drawn, rows) | _way_layers(registered, factor)
-        layers |= wayfinding.imdf_layers(drawn, rows, origin.storey)
+        layers = geopackage.plan_layers(drawn, tabulate()) | _way_layers(registered, factor)
+        layers |= wayfinding.imdf_layers(drawn, tabulate(), origin.storey)
         remedy = "leave gpkg out of plan.export.formats"
         with atomic.replace_file(outputs["gpkg"]) as temporary:
             sqlite_paths.check_sqlite_path(temporary, remedy)

@@ -334,7 +334,7 @@ ROOMS = Schema(
 `p_whole` and `p_apart` are how likely no part of one is a room of its own, and none beside it one
 with it; NaN where a person has drawn, parted or joined it.
 """
-FREE = Schema("free", 2, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
+FREE = Schema("free", 3, {"part": "int32", "geometry": "binary"}, ("part",), geometry=True)
 """The floor that rays went over: polygons that do not overlap.
 
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where

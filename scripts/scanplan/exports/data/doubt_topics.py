@@ -51,7 +51,7 @@ def format_bcf(
 def _find_model(guid: str, models: Mapping[str, str]) -> tuple[str, str]:
     """Return the file that a topic is of, and the GlobalId of what it selects there."""
     for name, text in models.items():
-        if f"'{guid}'" in text:
+        if guid and f"'{guid}'" in text:
             return name, guid
     return next(iter(models), ""), "" if models else guid
 

@@ -60,19 +60,25 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
 
 def _fill_rooms(plan: FloorPlan, is_left_out: BoolArray) -> Columns:
     """Return rooms without the niches that are left of walls."""
-    bodies = overlays.buffer_shapes(plan.bodies, moved_rooms.ON_M, join_style="mitre")
+    left_out = overlays.buffer_shapes(
+        plan.bodies[is_left_out], moved_rooms.ON_M, join_style="mitre"
+    )
     taken = overlays.unite_areas([*plan.bodies[~is_left_out], *plan.areas])
-    bare = overlays.subtract_areas(overlays.unite_areas(bodies[is_left_out]), taken)
-    if bare.is_empty:
-        return plan.rooms
-    outlines = [
-        max(
-            shapely.get_parts(overlays.unite_areas([area, _find_niches(area, bare)])),
-            key=lambda part: part.area,
-        )
-        for area in plan.areas
-    ]
-    return {**plan.rooms, "geometry": np.array(shapely.to_wkb(outlines), object)}
+    bare = overlays.subtract_areas(overlays.unite_areas(left_out), taken)
+    outlines = [*plan.areas]
+    for row, area in enumerate(plan.areas):
+        if bare.is_empty or area.distance(bare) > 0:
+            continue
+        niches = _find_niches(area, bare)
+        bare = overlays.subtract_areas(bare, niches)
+        parts = shapely.get_parts(overlays.unite_areas([area, niches]))
+        outlines[row] = max(parts, key=lambda part: part.area)
+    return {
+        **plan.rooms,
+        "area_m2": shapely.area(outlines),
+        "perimeter_m": shapely.length(outlines),
+        "geometry": np.array(shapely.to_wkb(outlines), object),
+    }
 
 
 def _find_niches(area: shapely.Polygon, bare: BaseGeometry) -> BaseGeometry:

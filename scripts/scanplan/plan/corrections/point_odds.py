@@ -92,9 +92,10 @@ def _rate_point(points: PlacedPoints, by: Sequence[int], row: int, scale: float)
     # a point in the middle of the others has no way from there, and errs alike everywhere
     along_m = off_m * (ahead.conjugate() / abs(ahead) if ahead else 1.0)
     placed_m2 = points.sigma_m[row] ** 2 + 1 / float(weights.sum())
-    # where their direction is hardly known, it errs along the way from them, too
-    turned_m2 = (abs(ahead) / others.information) ** 2 / 2
-    along_m2 = placed_m2 + (PROJECTION * abs(ahead)) ** 2 + turned_m2
+    # where their direction is hardly known, it errs along the way from them, too: by its square,
+    # so that at the limit of the one the other is at its own
+    turned_m = MOST_SIGMAS * abs(ahead) / others.information / 2
+    along_m2 = placed_m2 + (PROJECTION * abs(ahead)) ** 2 + turned_m**2
     across_m2 = placed_m2 + abs(ahead) ** 2 / others.information
     sigmas = float(np.hypot(along_m.real / along_m2**0.5, along_m.imag / across_m2**0.5))
     return OffPoint(row, abs(off_m), sigmas, len(by))
