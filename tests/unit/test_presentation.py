@@ -1,6 +1,7 @@
 """The regular drawing on its sheet: what is drawn, dimensioned and said."""
 
 import io
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
@@ -13,7 +14,11 @@ from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import paper_words
+from scanplan.exports.sheet.locale import Locale
+from scanplan.exports.sheet.marks import Word
+from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import STYLES
+from scanplan.exports.sheet.title import draw_room_table
 from scanplan.geometry.arcs import trace_arc
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.store import schemas
@@ -289,6 +294,18 @@ def test_curved_walls_have_their_radius_beside_them():
     # of the inner side, as it is measured
     radius_m = measured.walls["arc_radius_m"][0] - measured.walls["thickness_m"][0] / 2
     assert f"R {radius_m:.2f}" in [word.text for word in sheet.words]
+
+
+def test_names_of_rooms_are_read_before_their_heights_and_perimeters():
+    def words(name, number):
+        told = {"NAME": name, "NUMBER": number, "HEIGHT": "at least 2.70 m"}
+        stamps = [replace(of, facts={**of.facts, **told}) for of in composed().stamps]
+        drawn = draw_room_table(stamps, [Slot(0.0, 0.0, len(stamps))], Locale())
+        return {word.text for word in drawn if isinstance(word, Word)}
+
+    assert {"Perim. m", "Height m", "Hall"} <= words("Hall", "1")
+    long = words("Reading room", "A-001-0002-3")
+    assert "Height m" not in long and {"A-001-0002-3", "Reading room", "Area m²"} <= long
 
 
 def test_the_legend_explains_the_sign_for_about_only_where_it_stands():

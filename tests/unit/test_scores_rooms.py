@@ -61,6 +61,10 @@ class TestRooms:
         assert result.measures["rooms_true"] == result.measures["rooms_drawn"] == 1
         assert result.elements["verdict"].tolist() == ["right", "not_entered"]
         assert result.measures["roomformer_room_precision"] == 1
+        # nor where it is right
+        whole = score(scene, A, B)
+        assert whole.elements["verdict"].tolist() == ["right", "right"]
+        assert whole.measures["roomformer_room_precision"] == 1
 
     def test_a_room_in_the_open_is_outside(self, tmp_path):
         result = score(scene_making.scene(tmp_path), A, B, shapely.box(20, 0, 24, 3))

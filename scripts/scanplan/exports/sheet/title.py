@@ -35,6 +35,8 @@ _LEADING = 1.4  # of lines of a value, in heights of their capitals
 # values that are names, in no language, or said already
 _NAMES = ("Project", "Survey", "Earlier, a", "Later, b", "Design, a", "Survey, b", "Tolerances")
 _NAMES += ("Earliest", "Latest", "Storey", "Author", "Organisation", "Corrected on site by")
+_FEWEST_COLUMNS = 3  # of the table of rooms: number, name and area
+_LONG_MM = 18.0  # of a room's number; of a name, before which heights and perimeters are left out
 _NUMBER_MM = 6.0  # of the column of rooms' numbers, or as wide as one that somebody gave
 _UNSEEN = "-"  # instead of a size that nobody saw
 _HEAD_MM = 24.0  # beside a value of the title block: the longest head of usual rows, and a gap
@@ -252,22 +254,35 @@ def draw_room_table(
     names = [locale.say(head) for head in heads]
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
     n_sizes = 1 if is_brief else 3 - all(of_room[-1] == _UNSEEN for of_room in sizes)
-    names, sizes = names[: 2 + n_sizes], [of_room[:n_sizes] for of_room in sizes]
-    ends = _end_columns(names, [stamp.facts["NUMBER"] for stamp in stamps], sizes)
-    name_mm = _name_width_mm(ends, sizes)
-    yield from _heads(slots, names, ends)
-    for stamp, of_room, (x, y) in zip(stamps, sizes, _row_places(slots), strict=True):
+    numbers = [shorten_text(of.facts["NUMBER"], Letters.SMALL, _LONG_MM) for of in stamps]
+    longest_mm = max((_measure_name(of) for of in stamps), default=0.0)
+
+    def place_columns(n_shown: int) -> tuple[list[float], float]:
+        ends = _end_columns(names[: 2 + n_shown], numbers, [of[:n_shown] for of in sizes])
+        return ends, _name_width_mm(ends, sizes)
+
+    ends, name_mm = place_columns(n_sizes)
+    # names before heights and perimeters
+    while name_mm < min(longest_mm, _LONG_MM) and len(ends) > _FEWEST_COLUMNS:
+        ends, name_mm = place_columns(len(ends) - _FEWEST_COLUMNS)
+    yield from _heads(slots, names[: len(ends)], ends)
+    rooms = zip(stamps, numbers, sizes, _row_places(slots), strict=True)
+    for stamp, number, of_room, (x, y) in rooms:
         facts = stamp.facts
         marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
         marks_mm = measure_width_mm(marks, Letters.SMALL)
         name = shorten_text(facts["NAME"], Letters.SMALL, name_mm - marks_mm) + marks
-        texts = [facts["NUMBER"], name, *of_room]
+        texts = [number, name, *of_room][: len(ends)]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
             yield _word(kind, text, x + Paper.GAP + end, y, Letters.SMALL, float(column > 1))
         yield _rule(
             x + Paper.GAP, y - Paper.ROW / 2, x + Paper.COLUMN - Paper.GAP, y - Paper.ROW / 2
         )
+
+
+def _measure_name(stamp: Stamp) -> float:
+    return measure_width_mm(stamp.facts["NAME"], Letters.SMALL)
 
 
 def _list_sizes(stamp: Stamp, locale: Locale) -> list[str]:

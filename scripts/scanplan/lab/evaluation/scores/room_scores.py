@@ -90,6 +90,10 @@ def score_rooms(
     inside = shared_m2.max(axis=0, initial=0.0) / np.maximum(overlap.drawn_m2, 1e-9)
     verdicts = _judge(overlap, scene, rooms)
     counts = ~np.isin(verdicts, ["not_entered", "unknown"])
+    # a true room that nobody went into is neither asked for nor wrong
+    is_beyond = np.zeros(len(rooms), bool)
+    if len(rooms) and len(entered):
+        is_beyond = (verdicts == RIGHT) & ~entered[overlap.iou.argmax(axis=0)]
     found = best[true] > _FOUND_IOU
     measures: dict[str, float] = {
         "rooms_true": len(best),
@@ -108,7 +112,7 @@ def score_rooms(
             true[found],
             drawn[found],
         ),
-        **measure_room_polygons(rooms[counts], scene.entered_rooms),
+        **measure_room_polygons(rooms[counts & ~is_beyond], scene.entered_rooms),
     }
     numbers = np.arange(len(rooms)) if number is None else number
     rows = _drawn_rows(rooms, overlap, verdicts, numbers, rating or Rating())
