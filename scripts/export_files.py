@@ -101,7 +101,7 @@ def export_files(
         return _draft_regular(drawn, settings["max_change_m"], sizes)
 
     @cache
-    def tabulate() -> Mapping[str, element_tables.Rows]:
+    def tabulate() -> dict[str, element_tables.Rows]:
         nominal_m = nominal_widths.find_nominal_widths(draft(), sizes)
         return element_tables.tabulate_elements(drawn, ids, nominal_m)
 
@@ -130,7 +130,7 @@ def export_files(
     writers["imdf"] = lambda: wayfinding.format_imdf(
         drawn, tabulate(), site, origin.storey, language
     )
-    writers["json"] = lambda: room_graph.format_room_graph(drawn, dict(tabulate()))
+    writers["json"] = lambda: room_graph.format_room_graph(drawn, tabulate())
     for what in [what for what in outputs if what in writers]:
         content = writers[what]()
         binary = content.encode() if isinstance(content, str) else content

@@ -5,6 +5,7 @@ import shapely
 
 from scanplan.exports.geojson import Feature, format_collection, make_feature, state_system
 from scanplan.exports.model_origin import NOWHERE, Site
+from scanplan.plan.scaled_plan import scale_shapes
 from scanplan.types import Array, Columns
 from scanplan.visit.next_visit import NextVisit
 
@@ -41,14 +42,10 @@ def format_visit(
     features = [
         feature
         for what, columns, shapes in of_features
-        for feature in _features(what, columns, site.place_shapes(_enlarge(shapes, scale)))
+        for feature in _features(what, columns, site.place_shapes(scale_shapes(shapes, scale)))
     ]
     system = state_system(site)
     return format_collection(f"{name}, next visit", features, summary=summary, **system)
-
-
-def _enlarge(shapes: Array, scale: float) -> Array:
-    return np.asarray(shapely.transform(shapes, lambda xy_m: scale * xy_m), object)
 
 
 def _features(what: str, columns: Columns, shapes: Array) -> list[Feature]:

@@ -28,14 +28,18 @@ def scale_floorplan(plan: FloorPlan) -> FloorPlan:
     return replace(plan, **tables, **levels_m, nearly=nearly)
 
 
+def scale_shapes(shapes: Array, factor: float) -> Array:
+    """Return shapes (n,) with their coordinates multiplied."""
+    return np.asarray(shapely.transform(shapes, lambda xy_m: xy_m * factor), object)
+
+
 def scale_columns(columns: Columns, factor: float) -> dict[str, Array]:
     """Return the columns of a table likewise, its geometry (WKB) with them."""
     scaled: dict[str, Array] = {}
     for name, values in columns.items():
         power = next((of for end, of in _POWERS.items() if name.endswith(end)), 0)
         if name == "geometry":
-            shapes = shapely.from_wkb(np.asarray(values, object))
-            moved = shapely.transform(shapes, lambda xy_m: xy_m * factor)
+            moved = scale_shapes(shapely.from_wkb(np.asarray(values, object)), factor)
             scaled[name] = np.asarray(shapely.to_wkb(moved), object)
         else:
             scaled[name] = values * factor**power if power else values

@@ -144,6 +144,11 @@ class Correction:
     when: str = ""
     by: str = ""
 
+    @property
+    def entry_name(self) -> str:
+        """Its entry without the file."""
+        return self.entry.rpartition(": ")[2]
+
     def divide_sizes(self, factor: float) -> Correction:
         """Return it with its sizes, all but what was taped, so many times smaller."""
         sizes_m = {name: getattr(self, name) for name in _SIZES}
@@ -287,5 +292,5 @@ def _check_places(corrections: Iterable[Correction]) -> None:
         place = (correction.element, group, correction.at_m, correction.with_m)
         other = first.setdefault(place, correction)
         if other is not correction:
-            fault = f"{other.entry.rpartition(': ')[2]} is of the same place"
+            fault = f"{other.entry_name} is of the same place"
             raise StageError(f"{correction.entry}: {fault}; keep one of the two")

@@ -119,7 +119,7 @@ def _apply_found(rows: PlanRows, said: Sequence[Correction], outcome: Outcome) -
         element = (correction.element, row[correction.element])
         other = matched.setdefault(element, correction)
         if other is not correction:
-            fault = f"is of {element[0]} {element[1]}, as {other.entry.rpartition(': ')[2]} is"
+            fault = f"is of {element[0]} {element[1]}, as {other.entry_name} is"
             raise StageError(f"{correction.entry}: {fault}; keep one of the two")
         found.append((correction, row))
     for correction, row in found:

@@ -83,8 +83,7 @@ def _list_faults(
 
 def _name(point: Correction) -> str:
     """Return the entry of a point, and its name where it has one."""
-    entry = point.entry.rpartition(": ")[2]
-    return f"{entry} ({point.name})" if point.name else entry
+    return f"{point.entry_name} ({point.name})" if point.name else point.entry_name
 
 
 def _name_each(points: Sequence[Correction], off_m: FloatArray) -> list[tuple[str, float]]:

@@ -111,8 +111,7 @@ def find_column_faces(
     meets = shapely.distance(strips[rows], others) <= END_M
     is_free = ~np.isin(group, group[meets])
     sides = [row for row in rows[is_free].tolist() if is_side(walls[row])]
-    found = set(group[np.isin(rows, sides)].tolist())
-    columns = set(rows[np.isin(group, [*found])].tolist())
+    columns = set(rows[np.isin(group, group[np.isin(rows, sides)])].tolist())
     return [row in columns for row in range(len(walls))]
 
 
@@ -229,14 +228,15 @@ def _fit_rectangle(xy_m: FloatArray) -> Polygon:
     """
     some_m = xy_m[:: max(len(xy_m) // _FEW_POINTS, 1)]
     turns_rad = np.radians(np.arange(90))
-    own = [_turned(some_m, turn_rad) for turn_rad in turns_rad]
-    off_m2 = np.array([_mean_square(_far_from_box(own_m)) for own_m in own])
     share = (LOW_PERCENT, 100 - LOW_PERCENT)
-    area_m2 = [np.prod(np.ptp(np.percentile(own_m, share, axis=0), axis=0)) for own_m in own]
+    own = [_turned(some_m, turn_rad) for turn_rad in turns_rad]
+    boxes_m = [np.percentile(own_m, share, axis=0) for own_m in own]
+    off_m2 = np.array([_mean_square(_far_from_box(*of)) for of in zip(own, boxes_m, strict=True)])
+    area_m2 = [np.prod(np.ptp(box_m, axis=0)) for box_m in boxes_m]
     is_near = off_m2 <= off_m2.min() + (NOISE_M / 10) ** 2
     turn_rad = float(turns_rad[np.argmin(np.where(is_near, area_m2, np.inf))])
     own_m = _turned(xy_m, turn_rad)
-    low_m, high_m = np.percentile(own_m, (LOW_PERCENT, 100 - LOW_PERCENT), axis=0)
+    low_m, high_m = np.percentile(own_m, share, axis=0)
     low_x_m, low_y_m, high_x_m, high_y_m = (
         _side_m(own_m[:, axis], end_m[axis]) for end_m in (low_m, high_m) for axis in (0, 1)
     )
@@ -244,9 +244,9 @@ def _fit_rectangle(xy_m: FloatArray) -> Polygon:
     return affinity.rotate(box, turn_rad, origin=(0, 0), use_radians=True)
 
 
-def _far_from_box(own_m: FloatArray) -> FloatArray:
-    """Return how far points (n, 2) lie from the upright rectangle that most of them lie in."""
-    low_m, high_m = np.percentile(own_m, (LOW_PERCENT, 100 - LOW_PERCENT), axis=0)
+def _far_from_box(own_m: FloatArray, box_m: FloatArray) -> FloatArray:
+    """Return how far points (n, 2) lie from an upright rectangle: its low and its high corner."""
+    low_m, high_m = box_m
     beyond_m = np.maximum(low_m - own_m, own_m - high_m)
     outside_m = np.hypot(*np.maximum(beyond_m, 0).T)
     return np.where((beyond_m <= 0).all(axis=1), -beyond_m.max(axis=1), outside_m)
