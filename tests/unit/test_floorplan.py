@@ -52,6 +52,20 @@ def test_what_is_assumed_lies_behind_the_face():
     assert plan(walls=turned).bodies[1].bounds[:3:2] == pytest.approx((7.0, 7.1))
 
 
+@pytest.mark.parametrize(
+    ("perhaps", "reaches_m"),
+    [((False, False), (3.1, 2.9)), ((False, True), (3.0, 3.0)), ((True, False), (3.1, 2.9))],
+)
+def test_what_may_be_furniture_cuts_no_corner_off_a_wall(perhaps, reaches_m):
+    rows = [((0, 0, 3, 0), 0.2, 0, 1, "observed"), ((3, 0, 3, 2), 0.2, 2, 3, "observed")]
+    walls = {**floorplan_making.walls(rows), "perhaps": np.array(perhaps)}
+    body = plan(walls=walls, openings=floorplan_making.openings([])).bodies[0]
+    # mitred with the second wall, it ends at 45 degrees
+    sides = [shapely.LineString([(0, y_m), (9, y_m)]) for y_m in (-0.099, 0.099)]
+    ends_m = [side.intersection(body).bounds[2] for side in sides]
+    assert ends_m == pytest.approx(reaches_m, abs=0.002)
+
+
 def test_a_plan_of_faces_alone_has_lines_only():
     assert bare().solid("observed").is_empty
     assert [line.length for line in bare().single("observed")] == [5, 2]

@@ -234,8 +234,14 @@ class FloorPlan:
 
     @cached_property
     def bodies(self) -> Array:
-        """The footprint of each wall, (n,) Polygons, openings not cut out."""
-        return self.wall_shapes.draw_footprints()
+        """The footprint of each wall, (n,) Polygons, openings not cut out.
+
+        Of a regular plan, what may be furniture cuts no corner off a wall.
+        """
+        bodies = self.wall_shapes.draw_footprints()
+        sure = ~np.asarray(self.walls.get("perhaps", np.zeros(len(bodies))), bool)
+        bodies[sure] = self.wall_shapes.take(sure).draw_footprints()
+        return bodies
 
     @cached_property
     def _surfaces(self) -> Array:
