@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 
 from helpers import odd_files
@@ -106,13 +108,38 @@ def test_a_scan_folder(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("clouds", "read"),
+    [
+        (["1.5.ply", "2.5.ply"], ["1.5.ply", "2.5.ply"]),
+        (["scans/1.pcd", "map.ply"], ["scans/1.pcd"]),
+    ],
+    ids=["beside the poses", "a map beside scans"],
+)
+def test_clouds_with_poses(tmp_path, clouds, read):
+    for name in [*clouds, "poses.tum"]:
+        put(tmp_path / name)
+    files = dataset_files.find_files(tmp_path)
+    assert [str(Path(file).relative_to(tmp_path)) for file in files] == sorted([*read, "poses.tum"])
+    assert dataset_files.is_scan_folder(files)
+
+
+@pytest.mark.parametrize("clouds", [["1700000000000000000.ply"], ["a.ply", "b.ply"]])
+def test_clouds_without_poses_are_merged_ones(tmp_path, clouds):
+    for name in clouds:
+        put(tmp_path / name)
+    assert dataset_files.is_merged_cloud(dataset_files.find_files(tmp_path))
+
+
+@pytest.mark.parametrize(
     ("files", "told"),
     [
         ([], "accepted are .*bag"),
         (["readme.txt"], "accepted are .*bag"),
         (["a.bag.gz", "b.ZIP"], "unpack a.bag.gz, b.ZIP; accepted"),
         (["a.bag", "scans/1.pcd", "poses.tum"], "both"),
-        (["scans/1.pcd"], "no poses"),
+        (["scans/1.pcd"], "poses.tum"),
+        (["1700000000000000000.ply", "1700000000100000000.ply"], "poses.tum"),
+        (["a.bag", "1.pcd", "poses.tum"], "both"),
         (["poses.tum"], "no clouds"),
         (["x.bag.active", "y.bag"], "reindex"),
         (["run/metadata.yaml"], "no .db3 or .mcap"),

@@ -6,6 +6,7 @@ Standard library only: this runs while the workflow is being parsed.
 import io
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 from scanplan.errors import StageError
@@ -17,6 +18,7 @@ SCANS_FOLDER = "scans"
 ROSBAG2_SUFFIXES = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd")
 _PLACEHOLDER = re.compile(r"<[a-z][a-z0-9_]*>|[{}]+")
 _CLOUD_SUFFIXES = (".pcd", ".ply")
+_STAMP = re.compile(r"\d+\.\d+|\d{16,}")
 STATION_SUFFIXES = (".e57", ".ptx")
 _LAS_SUFFIXES = (".las", ".laz")
 MERGED_SUFFIXES = (*_LAS_SUFFIXES, *_CLOUD_SUFFIXES)
@@ -75,6 +77,8 @@ def _list_rosbag2_files(folder: Path) -> list[Path]:
 def list_scans(folder: Path) -> list[Path]:
     """Return the clouds and the poses of a folder of scans; nothing where there is neither.
 
+    Clouds stand in scans/, or else beside the poses.
+
     Raises
     ------
     StageError
@@ -82,15 +86,33 @@ def list_scans(folder: Path) -> list[Path]:
     """
     scans = folder / SCANS_FOLDER
     poses = folder / POSES_FILE
-    entries = visible(scans) if scans.is_dir() else []
-    clouds = [entry for entry in entries if entry.suffix.lower() in _CLOUD_SUFFIXES]
-    if poses.is_file() and not clouds:
-        raise StageError(f"{poses}: has no clouds beside it; put *.pcd or *.ply files into {scans}")
-    if clouds and not poses.is_file():
+    clouds = _list_by_suffix(scans, _CLOUD_SUFFIXES) if scans.is_dir() else []
+    if not poses.is_file():
+        _check_unposed(clouds, poses)
+        return []
+    beside = clouds or _list_by_suffix(folder, _CLOUD_SUFFIXES)
+    if not beside:
         raise StageError(
-            f"{scans}: has no poses; write {poses} with lines `t tx ty tz qx qy qz qw`"
+            f"{poses}: has no clouds beside it; put *.pcd or *.ply files there, or into {scans}"
         )
-    return [*clouds, poses] if clouds else []
+    return [*beside, poses]
+
+
+def is_stamp(name: str) -> bool:
+    """Return whether a name is a stamp: seconds with a point, or 16 and more digits of ns."""
+    return bool(_STAMP.fullmatch(name))
+
+
+def _check_unposed(scans: list[Path], poses: Path) -> None:
+    if scans:
+        raise StageError(
+            f"{scans[0]}: is a scan without a pose; write {poses} with lines"
+            " `t tx ty tz qx qy qz qw`"
+        )
+
+
+def _list_by_suffix(folder: Path, suffixes: Sequence[str]) -> list[Path]:
+    return [entry for entry in visible(folder) if entry.suffix.lower() in suffixes]
 
 
 def list_stations(folder: Path) -> list[Path]:
@@ -109,10 +131,12 @@ def list_clouds(folder: Path) -> list[Path]:
     Raises
     ------
     StageError
-        If there is more than one.
+        If there is more than one trajectory, or clouds are named by stamps, as scans are.
     """
     files = [entry for entry in visible(folder) if not entry.is_dir()]
     clouds = [file for file in files if is_merged(file)]
+    stamped = [file for file in clouds if is_stamp(file.stem)]
+    _check_unposed(stamped if len(stamped) > 1 else [], folder / POSES_FILE)
     timed = [file for file in clouds if file.suffix.lower() in _LAS_SUFFIXES]
     trajectories = [file for file in files if is_trajectory(file)]
     if timed and len(trajectories) > 1:

@@ -34,7 +34,7 @@ _SURVEY_SUFFIXES = (".yaml", ".yml")
 _PACKED_SUFFIXES = (".gz", ".zip", ".tar", ".tgz", ".7z", ".xz", ".bz2")
 _PERIODIC = re.compile(r"(.+)\1{19,}$")
 _ACCEPTED = (
-    "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), scans/*.pcd|*.ply with poses.tum,"
+    "*.bag, *.mcap, *.db3, rosbag2 folders (metadata.yaml), *.pcd|*.ply with poses.tum,"
     " stations (*.e57, *.ptx), *.las|*.laz with a trajectory (trajectory.txt), a merged cloud"
     " (*.las, *.laz, *.ply, *.pcd, *.e57), or a grid map (*.yaml with its image)"
 )

@@ -1,4 +1,4 @@
-"""One survey as a folder of clouds, scans/*.pcd or *.ply, with their poses in poses.tum."""
+"""One survey as a folder of clouds, *.pcd or *.ply, with their poses in poses.tum."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from scanplan.errors import StageError
-from scanplan.project import dataset_files
+from scanplan.project import dataset_entries, dataset_files
 from scanplan.recordings import clocks, frame_edges, registered_clouds, table_points
 from scanplan.recordings.cloud_reading import CloudReading
 from scanplan.recordings.integrity.pcd_size import check_pcd_size
@@ -20,9 +20,6 @@ from scanplan.recordings.posed_scans import PosedScans
 from scanplan.stage import log
 from scanplan.store import tum
 from scanplan.types import Array, FloatArray, IntArray
-
-_SECONDS = re.compile(r"\d+\.\d+")
-_NANOSECONDS = re.compile(r"\d{16,}")
 
 
 class ScanFolder(PosedScans):
@@ -98,7 +95,7 @@ def _order_clouds(
 ) -> tuple[list[Path], IntArray]:
     """Return the clouds in scan_id order and their stamps (n,) int64."""
     stems = [path.stem for path in paths]
-    if all(_SECONDS.fullmatch(s) or _NANOSECONDS.fullmatch(s) for s in stems):
+    if all(dataset_entries.is_stamp(stem) for stem in stems):
         stamps = [int(Decimal(s) * 10**9) if "." in s else int(s) for s in stems]
         if not max(stamps) < tum.END_NS:
             longest = max(paths, key=lambda path: len(path.stem))
