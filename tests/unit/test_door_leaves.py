@@ -7,9 +7,10 @@ import pytest
 import shapely
 
 from helpers import floorplan_making
-from scanplan.exports.sheet.leaves import Leaves, find_leaves, hang_leaves
+from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.sheet.leaves import Leaves, Swing, draw_swing, find_leaves, hang_leaves
 from scanplan.exports.sheet.marks import Symbol, flatten
-from scanplan.exports.sheet.openings import draw_things, list_symbols
+from scanplan.exports.sheet.openings import draw_things, find_swings, list_symbols
 from scanplan.exports.sheet.symbols import symbol_paths
 
 # a wall of 0.2 m along y = 0, a door from x = 1 to 2
@@ -21,7 +22,7 @@ def leaf(x, y, to_x, to_y):
     return Leaves(np.array([[[x, y], [to_x, to_y]]], float), np.zeros(1, bool))
 
 
-def draw_swing(door, seen, walls):
+def hang_one(door, seen, walls):
     """One door as it is drawn."""
     (drawn,) = hang_leaves([door], seen, walls)
     return drawn
@@ -38,7 +39,7 @@ def draw_swing(door, seen, walls):
     ],
 )
 def test_a_door_swings_as_its_leaf_stood(seen, tip):
-    swing = draw_swing(DOOR, seen, WALL)
+    swing = hang_one(DOOR, seen, WALL)
     assert swing.kind == "swing" and swing.width_m == pytest.approx(1)
     opened, way = (flatten(path) for path in symbol_paths(swing))
     # from the face of the wall at the jamb
@@ -53,7 +54,7 @@ def test_a_door_swings_as_its_leaf_stood(seen, tip):
 
 def test_a_wide_door_has_two_leaves():
     wide = Symbol("door", np.array([[2.0, 0.0], [4.0, 0.0]]), 0.2, "door-0", "")
-    swing = draw_swing(wide, leaf(4, 0, 4, 0.95), shapely.Polygon())
+    swing = hang_one(wide, leaf(4, 0, 4, 0.95), shapely.Polygon())
     assert swing.block == "SWING-2"
     tips = [flatten(path)[-1] for path in symbol_paths(swing)][::2]
     np.testing.assert_allclose(tips, [[2, 1.1], [4, 1.1]], atol=1e-9)
@@ -69,7 +70,7 @@ def test_a_wide_door_has_two_leaves():
     ],
 )
 def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
-    assert draw_swing(DOOR, seen, WALL) is DOOR
+    assert hang_one(DOOR, seen, WALL) is DOOR
 
 
 @pytest.mark.parametrize(
@@ -82,7 +83,7 @@ def test_a_door_whose_leaf_was_not_seen_open_is_a_plain_opening(seen):
 )
 def test_a_door_is_drawn_ajar_where_a_wall_stands_in_its_way(in_the_way, tip):
     walls = shapely.union(WALL, in_the_way)
-    swing = draw_swing(DOOR, leaf(2, 0.05, 2, 0.95), walls)
+    swing = hang_one(DOOR, leaf(2, 0.05, 2, 0.95), walls)
     assert swing.kind == "swing" and swing.is_hinged
     opened, way = (flatten(path) for path in symbol_paths(swing))
     np.testing.assert_allclose(opened, [(2, 0.1), tip], atol=1e-9)
@@ -95,15 +96,15 @@ def test_of_two_leaves_that_hangs_in_a_door_that_no_wall_is_in_the_way_of(order)
     walls = shapely.union(WALL, shapely.box(0.9, 0.4, 2.1, 0.6))
     both = np.concatenate([leaf(2, 0.05, 2, 0.95).lines_m, leaf(1, -0.05, 1, -0.95).lines_m])
     seen = Leaves(both[list(order)], np.zeros(2, bool))
-    assert draw_swing(DOOR, seen, walls).ends_m[0, 1] == pytest.approx(-0.1)
+    assert hang_one(DOOR, seen, walls).ends_m[0, 1] == pytest.approx(-0.1)
 
 
 def test_a_leaf_that_goes_through_a_wall_hangs_in_no_door_but_one_a_person_has_seen():
     walls = shapely.union(WALL, shapely.box(0.9, 0.4, 2.1, 0.6))
     seen = leaf(2, 0.05, 2, 0.95)
-    assert draw_swing(DOOR, seen, walls) is DOOR
+    assert hang_one(DOOR, seen, walls) is DOOR
     corrected = replace(DOOR, facts={"corrected": "swing"})
-    assert draw_swing(corrected, seen, walls).block == "SWING-RIGHT"
+    assert hang_one(corrected, seen, walls).block == "SWING-RIGHT"
 
 
 def beside(low_m, width_m, number=1):
@@ -176,3 +177,27 @@ def test_leaves_are_middle_lines_of_their_outlines():
     ends_m = find_leaves(furniture).lines_m[0]
     np.testing.assert_allclose(sorted(ends_m.tolist()), [[0.02, 0.0], [0.02, 0.9]])
     assert find_leaves(floorplan_making.furniture()).lines_m.shape == (0, 2, 2)
+
+
+def test_a_door_opens_in_the_regular_drawing_as_in_the_measured_one():
+    """Of two leaves of 0.98 and 1.05 m the first fits a door of 0.9 m, the other one of 0.95 m."""
+    leaves = [shapely.box(4.1, 0.98, 5.08, 1.02), shapely.box(2.95, 0.98, 4.0, 1.02)]
+    measured = floorplan_making.plan(furniture=floorplan_making.furniture(leaves, "leaf"))
+    regular, _ = draft_plan(measured, DraftSettings(0.05, (), (0.95,), (), 0.3))
+    assert regular.openings["width_m"][1] == pytest.approx(0.95)
+    swings = find_swings(measured)
+    assert swings.keys() == {1} and find_swings(regular) == swings
+    # whatever becomes of the leaves
+    bare = replace(regular, furniture=floorplan_making.furniture())
+    assert find_swings(bare) == swings
+
+
+@pytest.mark.parametrize("block", ["SWING-LEFT", "SWING-LEFT-45"])
+def test_a_door_whose_way_is_known_opens_no_wider_than_walls_let_it(block):
+    swing = Swing(block)
+    in_the_way = shapely.union(WALL, shapely.box(0.8, 0.9, 1.4, 2))
+    drawn = [draw_swing(DOOR, swing, walls).block for walls in (WALL, in_the_way)]
+    assert drawn == [block, "SWING-LEFT-45"]
+    # where it cannot be, it is all the same
+    assert draw_swing(DOOR, swing, shapely.box(0, 0, 3, 3)).block == block
+    assert draw_swing(DOOR, Swing(""), WALL) is DOOR

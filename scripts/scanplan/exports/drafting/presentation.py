@@ -153,7 +153,7 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     # a hole in a wall is one, whatever is behind it
     is_recess = ~shapely.is_empty(_find_backs(plan))
     for row, drawn in enumerate(list_symbols(plan)):
-        # a door swings as a person said; that he did is on the measured sheet
+        # that a person said something of it is on the measured sheet
         facts = {name: value for name, value in drawn.facts.items() if name != "corrected"}
         symbol = replace(drawn, facts=facts)
         if is_recess[row]:

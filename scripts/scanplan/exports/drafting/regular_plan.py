@@ -18,6 +18,7 @@ from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.square_columns import square_columns
 from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
+from scanplan.exports.sheet.openings import state_swings
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
@@ -99,13 +100,15 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     """Return a plan with regular walls, its faces, rooms and openings with them, and what changed.
 
     Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
-    openings `width_changed_m`; `perhaps` says which walls may be something else, facades apart: a
-    building has an outline in any case. All straight walls have a thickness; lines of those seen
-    from one side are in their middle. Curved walls stay as they are: those seen from one side have
-    no thickness, and their line is their face. Other doubts are left out: they stand on the sheet
-    of what was measured.
+    openings `width_changed_m` and those of `state_swings`; `perhaps` says which walls may be
+    something else, facades apart: a building has an outline in any case. All straight walls have a
+    thickness; lines of those seen from one side are in their middle. Curved walls stay as they are:
+    those seen from one side have no thickness, and their line is their face. Other doubts are left
+    out: they stand on the sheet of what was measured.
+
+    Doors open as in the surveyed plan, whose leaves would say another thing of moved walls.
     """
-    whole = leave_scraps(surveyed)
+    whole = leave_scraps(state_swings(surveyed))
     is_facade = find_facades(whole)
     plan, n_cut = cut_stubs(whole, is_facade)
     if plan is not whole:

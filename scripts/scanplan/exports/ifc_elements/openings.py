@@ -19,9 +19,9 @@ from scanplan.exports.ifc_elements.storey_plan import (
 from scanplan.exports.ifc_model import Frame, IfcModel
 from scanplan.exports.model_colours import colour_of
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.exports.sheet.leaves import Swing
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Symbol
-from scanplan.exports.sheet.openings import Swing
 from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan

@@ -10,7 +10,8 @@ import numpy as np
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.drafting.regular_plan import MEASURED
 from scanplan.exports.ifc_model import ClassCode
-from scanplan.exports.sheet.openings import Swing, find_swings
+from scanplan.exports.sheet.leaves import Swing
+from scanplan.exports.sheet.openings import find_swings
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns
 

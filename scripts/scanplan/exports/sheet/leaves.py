@@ -11,6 +11,7 @@ from shapely.geometry.base import BaseGeometry
 from scanplan.exports.sheet.marks import Symbol, flatten
 from scanplan.exports.sheet.symbols import AJAR, symbol_paths
 from scanplan.geometry import overlays
+from scanplan.geometry.lines import left_normals
 from scanplan.geometry.polygons import long_axis_m
 from scanplan.plan.tolerances import HINGE_M, WIDEST_LEAF_M
 from scanplan.store import schemas
@@ -49,6 +50,28 @@ def find_leaves(furniture: Columns) -> Leaves:
     outlines = shapely.from_wkb(np.asarray(furniture["geometry"], object)[rows])
     lines_m = np.array([long_axis_m(outline) for outline in outlines]).reshape(-1, 2, 2)
     return Leaves(lines_m, np.asarray(furniture["named"], str)[rows] == schemas.SLIDING)
+
+
+@dataclass(frozen=True)
+class Swing:
+    """How a door opens.
+
+    Attributes
+    ----------
+    block : str
+        Of `symbols.BLOCKS`: hinged at the start or the end of its line, with two leaves, or such as
+        slide.
+    is_reversed : bool
+        Whether its line is to run the other way, so that it opens to the left of it.
+    """
+
+    block: str
+    is_reversed: bool = False
+
+    @property
+    def way(self) -> str:
+        """Its block, however far the leaf is drawn open."""
+        return self.block.removesuffix(AJAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,17 +146,29 @@ def _list_hangings(
         hinge, along_m, log_odds = _read_leaf(door.ends_m, leaves.lines_m[number], left, leaf_m)
         if hinge < 0:
             continue
-        side = np.sign(along_m)
-        # hinged in the side of the wall that it opens to
-        from_m = door.ends_m + side * door.thickness_m / 2 * left
-        one = "SWING-LEFT" if (hinge == 0) == (side > 0) else "SWING-RIGHT"
-        block = "SWING-2" if is_double else one
-        swing = replace(door, kind="swing", ends_m=from_m if side > 0 else from_m[::-1])
-        swings = [replace(swing, block=block + ending) for ending in ("", AJAR)]
+        one = "SWING-LEFT" if (hinge == 0) == (along_m > 0) else "SWING-RIGHT"
+        swings = _list_swings(door, Swing("SWING-2" if is_double else one, along_m < 0))
         free = [swing for swing in swings if not _is_blocked(swing, walls)]
         stated = swings if "corrected" in door.facts else []
         for chosen in [*free, *stated][:1]:
             yield _Hanging(chosen, row, hinge if is_double else 0, number, log_odds)
+
+
+def _list_swings(door: Symbol, swing: Swing) -> list[Symbol]:
+    """Return a door with its leaf wide open and ajar, hinged in the side that it opens to."""
+    ends_m = door.ends_m[::-1] if swing.is_reversed else door.ends_m
+    ends_m = ends_m + door.thickness_m / 2 * left_normals(ends_m[None])
+    opened = replace(door, kind="swing", ends_m=ends_m)
+    return [replace(opened, block=swing.way + ending) for ending in ("", AJAR)]
+
+
+def draw_swing(door: Symbol, swing: Swing, walls: BaseGeometry) -> Symbol:
+    """Return a door that opens as is known, if at all; ajar where walls let it be no more."""
+    if swing.way in ("", "SLIDING"):
+        return replace(door, kind="swing", block=swing.block) if swing.way else door
+    wide, ajar = _list_swings(door, swing)
+    is_less = _is_blocked(wide, walls) and not _is_blocked(ajar, walls)
+    return ajar if is_less or swing.block == ajar.block else wide
 
 
 def _choose_likeliest(found: Sequence[_Hanging]) -> list[_Hanging]:

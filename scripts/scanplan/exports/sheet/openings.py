@@ -1,15 +1,15 @@
 """Openings as they are drawn, on sheets and in the report: symbols, and how doors swing."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from scanplan.exports.sheet.content import draw_furniture, facts_of, is_doubtful
-from scanplan.exports.sheet.leaves import find_leaves, hang_leaves
+from scanplan.exports.sheet.leaves import Swing, draw_swing, find_leaves, hang_leaves
 from scanplan.exports.sheet.marks import Mark, Symbol, flatten
-from scanplan.exports.sheet.symbols import AJAR, symbol_paths
+from scanplan.exports.sheet.symbols import symbol_paths
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
@@ -17,17 +17,18 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import HINGE_M
 from scanplan.store import schemas
 
+_SWING = ("swing", "swing_reversed")  # columns of openings that say how doors open
 _ON_LEAF_M = 0.1  # from a leaf that is drawn square to where it was seen
 
 
 def list_symbols(plan: FloorPlan) -> list[Symbol]:
     """Return the symbols of doors, windows and passages, in the middle of their walls.
 
-    Doors swing as their leaves were seen. A passage in no wall between two rooms is inferred:
-    nothing of it stands there.
+    Doors swing as their leaves were seen, or as the plan says. A passage in no wall between two
+    rooms is inferred: nothing of it stands there.
     """
     left_m, right_m = (np.append(side_m, 0.0) for side_m in plan.sides_m)
-    doubtful, leaves = is_doubtful(plan.openings), find_leaves(plan.furniture)
+    doubtful = is_doubtful(plan.openings)
     known = overlays.subtract_areas(overlays.unite_areas(plan.known_bodies), plan.all_gaps)
     walls = overlays.unite_areas([known, plan.assumed])
     symbols: list[Symbol] = []
@@ -56,7 +57,14 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         )
         symbols.append(symbol)
     rows = [row for row, symbol in enumerate(symbols) if symbol.kind == "door"]
-    for row, door in zip(rows, hang_leaves([symbols[r] for r in rows], leaves, walls), strict=True):
+    doors = [symbols[row] for row in rows]
+    if "swing" in plan.openings:
+        blocks, reverses = (plan.openings[name][rows].tolist() for name in _SWING)
+        swings = map(Swing, blocks, reverses)
+        hung = [draw_swing(door, of, walls) for door, of in zip(doors, swings, strict=True)]
+    else:
+        hung = hang_leaves(doors, find_leaves(plan.furniture), walls)
+    for row, door in zip(rows, hung, strict=True):
         symbols[row] = door
     return symbols
 
@@ -85,28 +93,6 @@ def draw_things(plan: FloorPlan, symbols: Sequence[Symbol]) -> Iterator[Mark]:
             yield mark
 
 
-@dataclass(frozen=True, eq=False)
-class Swing:
-    """How a door opens.
-
-    Attributes
-    ----------
-    block : str
-        Of `symbols.BLOCKS`: hinged at the start or the end of its line, with two leaves, or such as
-        slide.
-    is_reversed : bool
-        Whether its line is to run the other way, so that it opens to the left of it.
-    """
-
-    block: str
-    is_reversed: bool
-
-    @property
-    def way(self) -> str:
-        """Its block, however far the leaf is drawn open."""
-        return self.block.removesuffix(AJAR)
-
-
 def find_swings(plan: FloorPlan) -> dict[int, Swing]:
     """Return how doors open, by their rows, where a leaf stands open, or a person said so."""
     found: dict[int, Swing] = {}
@@ -116,3 +102,16 @@ def find_swings(plan: FloorPlan) -> dict[int, Swing]:
             before_m, after_m = (ends[1] - ends[0] for ends in (lines_m[row], symbol.ends_m))
             found[row] = Swing(symbol.block, bool(before_m @ after_m < 0))
     return found
+
+
+def state_swings(plan: FloorPlan) -> FloorPlan:
+    """Return a plan whose openings say how doors open, whatever becomes of walls and leaves.
+
+    They have the columns `swing`, a block or empty, and `swing_reversed`, see `Swing`.
+    """
+    n_openings = len(plan.openings["opening"])
+    blocks, reverses = np.full(n_openings, "", object), np.zeros(n_openings, bool)
+    for row, swing in find_swings(plan).items():
+        blocks[row], reverses[row] = swing.block, swing.is_reversed
+    stated = dict(zip(_SWING, (blocks, reverses), strict=True))
+    return replace(plan, openings={**plan.openings, **stated})
