@@ -1,6 +1,7 @@
 """The regular drawing on its sheet: what is drawn, dimensioned and said."""
 
 import io
+from collections import Counter
 from dataclasses import replace
 
 import ezdxf
@@ -13,7 +14,7 @@ from scanplan.exports import dxf
 from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
-from scanplan.exports.sheet.composition import paper_words
+from scanplan.exports.sheet.composition import compose_sheet, paper_words
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
@@ -62,6 +63,25 @@ def test_what_may_be_furniture_is_an_outline_but_the_facade(wall, is_outline):
     assert ground(sheet, "perhaps").area < 0.3 and ground(sheet, "poche").area > 4
     meaning = STYLES["perhaps"].meaning
     assert (meaning in [word.text for word in paper_words(sheet)]) == is_outline
+
+
+@pytest.mark.wording
+def test_contents_are_counted_of_what_a_drawing_draws():
+    """A door in no wall, off all rooms, is on the measured sheet alone; a gap is a passage else."""
+    door = ((1.0, 6.0, 1.9, 6.0), -1, "door", np.nan, np.nan, -1, -1)
+    gap = ((5.0, 0.0, 5.8, 0.0), 0, "gap", np.nan, np.nan, 1, -1)
+    openings = floorplan_making.openings([*floorplan_making.OPENINGS, door, gap])
+    measured = floorplan_making.plan(openings=openings)
+    regular, drafted = draft_plan(measured, SETTINGS)
+    sheets = compose_sheet(measured), compose_presentation(measured, regular, drafted)
+    counts = [{"door": 3, "window": 1, "gap": 1}, {"door": 2, "window": 1, "passage": 1}]
+    for sheet, drawn in zip(sheets, counts, strict=True):
+        assert Counter(symbol.kind for symbol in sheet.symbols) == drawn
+        (said,) = (word.text for word in sheet.paper_words if word.element == "title:CONTENTS")
+        stated = {
+            part.split()[-1].removesuffix("s"): int(part.split()[0]) for part in said.split(",")
+        }
+        assert stated == {"wall": 6, "room": 2, **drawn}
 
 
 def test_a_line_that_parts_rooms_at_one_edge_is_drawn():

@@ -499,15 +499,16 @@ def make_floorplan(
     )
 
 
-def summarise_floorplan(plan: FloorPlan) -> str:
+def summarise_floorplan(plan: FloorPlan, drawn: Sequence[str] | None = None) -> str:
     """Return how many walls, openings of each type and rooms a plan has, in words.
 
-    Without walls it is how many faces of such.
+    Without walls it is how many faces of such. Types of openings may be given as they are drawn.
     """
+    types = plan.openings["type"].tolist() if drawn is None else drawn
     counts = {"wall": len(plan.walls["wall"])}
     counts["wall face"] = 0 if counts["wall"] else len(plan.faces["face"])
     for kind, noun in OPENINGS.items():
-        counts[noun] = int((plan.openings["type"] == kind).sum())
+        counts[noun] = types.count(kind)
     counts["room"] = len(plan.rooms["room"])
     return ", ".join(say_count(n, noun) for noun, n in counts.items() if n)
 

@@ -147,7 +147,7 @@ def lay_out(
     bar, legend_slots, note_slots, table_slots = places
     beside: list[Mark | Word] = [
         *title.draw_frame(page),
-        *title.draw_title_block(page, shown.titled, facts),
+        *title.draw_title_block(page, shown.titled, shown.contents, facts),
         *title.draw_scale_bar(page, bar[0], facts.north),
         *title.draw_legend(legend, legend_slots, page.locale),
         *title.draw_notes(shown.notes, note_slots, page.locale),

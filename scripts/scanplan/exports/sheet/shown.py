@@ -14,6 +14,9 @@ from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import FloatArray
 
+_TYPES = {"swing": "door", "parting": "passage"}
+"""Of openings, by kinds of symbols that have another name."""
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -24,7 +27,7 @@ class Shown:
     plan : FloorPlan
         Whose rooms are stamped and dimensioned.
     titled : FloorPlan
-        Whose contents, doubts and accuracy the title block states: as measured.
+        Whose doubts and accuracy the title block states: as measured.
     marks, symbols : lists
         Map frame.
     uncertain : shapely geometry
@@ -57,6 +60,13 @@ class Shown:
     is_labelled: bool = True
     is_dimensioned: bool = True
     notes: Sequence[str] = ()
+
+    @property
+    def contents(self) -> str:
+        """How many walls, openings and rooms are drawn, and what every sheet of the plan says."""
+        drawn = [_TYPES.get(symbol.kind, symbol.kind) for symbol in self.symbols]
+        counts = floorplan.summarise_floorplan(self.plan, drawn)
+        return "; ".join(filter(None, [self.titled.mark, counts]))
 
 
 def show_measured(plan: FloorPlan) -> Shown:

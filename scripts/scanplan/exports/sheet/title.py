@@ -20,7 +20,6 @@ from scanplan.exports.sheet.marks import Mark, Stamp, Symbol, Word, flatten, str
 from scanplan.exports.sheet.paper import TITLE_ROWS, Page, Slot
 from scanplan.exports.sheet.styles import STYLES, Letters, Paper
 from scanplan.exports.sheet.symbols import symbol_paths
-from scanplan.plan import floorplan
 from scanplan.plan.floorplan import OPENINGS, FloorPlan, say_count
 from scanplan.plan.survey_scale import state_scale
 from scanplan.types import FloatArray
@@ -52,14 +51,18 @@ def draw_frame(page: Page) -> Iterator[Mark]:
         yield Mark("title", [straight(np.array([[right, level], [right, y1]]))], element="column")
 
 
-def draw_title_block(page: Page, plan: FloorPlan, facts: SheetFacts) -> Iterator[Mark | Word]:
-    """Yield the title block, at the lower right, 180 mm wide (ISO 7200)."""
+def draw_title_block(
+    page: Page, plan: FloorPlan, contents: str, facts: SheetFacts
+) -> Iterator[Mark | Word]:
+    """Yield the title block, at the lower right, 180 mm wide (ISO 7200), of what is drawn.
+
+    Doubts, accuracy and verdict are those of the plan as it was measured.
+    """
     turned = round(page.turn_deg, 1) + 0.0
     # where a place takes two lines there is room for no more
     aim = "" if facts.frame else " to the main walls"
     turn = f"turned by {turned:+.1f}°{aim}" if turned else "not turned"
     n_doubts = len(list_doubts(plan))
-    contents = "; ".join(filter(None, [plan.mark, floorplan.summarise_floorplan(plan)]))
     noun = "correction" if plan.n_corrections == 1 else "corrections"
     by_hand = f"; {plan.n_corrections} {noun} by hand" if plan.n_corrections else ""
     storey = facts.storey or page.locale.say("not named")
