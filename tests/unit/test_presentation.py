@@ -133,7 +133,10 @@ def test_lengths_end_at_surfaces_that_were_measured():
     lengths = {dimension.word.text for dimension in sheet.dimensions}
     # from the outer side in the west to the room's in the east, whose wall has no known thickness
     assert {"7.30", "3.40", "1.20"} <= lengths
-    assert not any(text.startswith("~") for text in lengths)
+    # the small room's wall in the north is to be verified
+    assert {text for text in lengths if text.startswith("~")} == {"~3.00"}
+    sure = composed(walls=floorplan_making.walls() | {"verify": np.zeros(6, bool)})
+    assert not any(dimension.word.text.startswith("~") for dimension in sure.dimensions)
 
 
 def test_chains_run_along_open_rooms_as_along_closed_ones():
@@ -330,7 +333,8 @@ def test_names_of_rooms_are_read_before_their_heights_and_perimeters():
 
 def test_the_legend_explains_the_sign_for_about_only_where_it_stands():
     sign = "~ about, an end is not known"
-    assert sign not in [word.text for word in paper_words(composed())]
+    sure = composed(walls=floorplan_making.walls() | {"verify": np.zeros(6, bool)})
+    assert sign not in [word.text for word in paper_words(sure)]
     opened = floorplan_making.rooms()
     opened["closed"][1] = False
     assert sign in [word.text for word in paper_words(composed(rooms=opened))]

@@ -321,8 +321,9 @@ def test_an_oblique_facade_in_pieces_is_one_length():
         rooms=floorplan_making.rooms([shapely.Polygon(corners)]),
     )
     sheet = composition.compose_sheet(drawn, turn_deg=0.0)
-    measured = [float(d.word.text) for d in sheet.dimensions if d.line_m[:, 0].max() < -0.3]
-    assert measured == [4.0]
+    measured = [d.word.text for d in sheet.dimensions if d.line_m[:, 0].max() < -0.3]
+    # no wall stands there
+    assert measured == ["~4.00"]
 
 
 def test_what_lies_behind_an_oblique_facade_is_not_measured_from_there():
@@ -347,7 +348,10 @@ def test_what_lies_before_an_oblique_facade_is_measured():
         rooms=floorplan_making.rooms(outlines),
     )
     sheet = composition.compose_sheet(drawn, turn_deg=0.0)
-    south = [float(d.word.text) for d in sheet.dimensions if d.line_m[:, 1].max() < -0.01]
+    lengths = [
+        d.word.text.removeprefix("~") for d in sheet.dimensions if d.line_m[:, 1].max() < -0.01
+    ]
+    south = [float(length) for length in lengths]
     assert 3.0 in south
 
 
@@ -410,10 +414,13 @@ def test_a_step_of_a_facade_that_was_not_seen_is_about_where_it_is():
     """The second room is a metre shallower; of the first only the side beside it was not seen."""
     rooms = [shapely.box(0, 0, 4, 3), shapely.box(4, 1, 7, 3)]
     step = ((4, 0, 4, 1), -1, "unseen", np.nan, np.nan, 0, -1)
+    corners = [(0, 0), (4, 0), (4, 1), (7, 1), (7, 3), (0, 3), (0, 0)]
+    sides = [(*one, *other, -1) for one, other in itertools.pairwise(corners)]
 
-    def south(unseen):
+    def south(unseen, faces=sides):
         sheet = composition.compose_sheet(
             plan(
+                faces=floorplan_making.faces(faces),
                 walls=floorplan_making.walls([]),
                 openings=floorplan_making.openings([]),
                 unseen=floorplan_making.openings(unseen),
@@ -424,6 +431,30 @@ def test_a_step_of_a_facade_that_was_not_seen_is_about_where_it_is():
 
     assert south([]) == ["3.00", "4.00", "7.00"]
     assert south([step]) == ["7.00", "~3.00", "~4.00"]
+    # nothing was found at the side in the east, or at that and the others that are upright
+    assert south([], [*sides[:3], *sides[4:]]) == ["4.00", "~3.00", "~7.00"]
+    assert south([], sides[::2]) == ["~3.00", "~4.00", "~7.00"]
+
+
+def test_a_chain_that_ends_at_a_tip_that_was_not_seen_is_about_so_long():
+    """A room open to the east, where two outlines that were not seen run to a tip."""
+    corners = [(0, 0), (4, 0), (7, 1.5), (4, 3), (0, 3), (0, 0)]
+    sides = [(*one, *other) for one, other in itertools.pairwise(corners)]
+    seen = [(*side, -1) for side in sides]
+
+    def south(n_unseen):
+        unseen = [(side, -1, "unseen", np.nan, np.nan, 0, -1) for side in sides[1 : 1 + n_unseen]]
+        drawn = plan(
+            faces=floorplan_making.faces(seen),
+            walls=floorplan_making.walls([]),
+            openings=floorplan_making.openings([]),
+            unseen=floorplan_making.openings(unseen),
+            rooms=floorplan_making.rooms([shapely.Polygon(corners)]),
+        )
+        sheet = composition.compose_sheet(drawn, turn_deg=0.0)
+        return {d.word.text for d in sheet.dimensions if d.line_m[:, 1].max() < -0.2}
+
+    assert "7.00" in south(0) and "~7.00" in south(2)
 
 
 @pytest.mark.parametrize("depth_m", [0.3, 0.8, 1.2])

@@ -19,7 +19,7 @@ from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Mark, Symbol
 from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import ROUND_SCALES, CrowdedError
-from scanplan.exports.sheet.shown import Shown
+from scanplan.exports.sheet.shown import Shown, find_uncertain
 from scanplan.exports.sheet.styles import Letters, Paper
 from scanplan.exports.sheet.symbols import choose_block
 from scanplan.geometry import overlays
@@ -86,7 +86,7 @@ def compose_overview(
 def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str]) -> Shown:
     is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
     spans_m = _find_spans(regular, is_measured)
-    unseen_m = floorplan.centrelines_m(regular.unseen)
+    doubtful = measured.walls["wall"][content.is_doubtful(measured.walls)]
     n_openings = len(regular.openings["opening"])
     unmarked = {**regular.openings, "corrected": np.full(n_openings, "", object)}
     return Shown(
@@ -94,7 +94,7 @@ def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str])
         titled=measured,
         marks=[*_draw_marks(regular)],
         symbols=[*_list_symbols(regular)],
-        uncertain=overlays.unite_shapes(floorplan.line_shapes(unseen_m)),
+        uncertain=find_uncertain(regular, np.isin(regular.walls["wall"], doubtful)),
         built=_find_built(regular, is_measured, spans_m),
         spans_m=spans_m,
         known=None,

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import shapely
@@ -66,7 +67,7 @@ class Ground:
     known : shapely geometry
         Of the outline: rooms, and walls of which both sides were seen.
     uncertain : shapely geometry
-        Spans of rooms' outlines that were not seen, and walls that are to be verified.
+        Where what bounds rooms is not known, and walls that are to be verified.
     """
 
     outline: BaseGeometry
@@ -107,13 +108,14 @@ def dimension_facades(
         is_assumed = _find_assumed_ends(turned.outline, turned.known, reach_mm)
         about = set(itertools.compress(ends, is_assumed))
         uncertain_strip = overlays.buffer_shapes(turned.uncertain, reach_mm)
-        about |= {stop[0] for stop in stops if _is_beside(stop, upright, uncertain_strip, reach_mm)}
+        sides = _Sides(turned.outline, upright, reach_mm)
+        whole = [_Stop(x, y0) for x in ends]
+        about |= {stop.x for stop in stops or whole if sides.is_most_in(uncertain_strip, stop)}
         level = turned.reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
             yield from _draw_chain(page, stops, level, turn, space, about)
         if quarter in (0, 3):
-            whole = [(x, y0) for x in ends]
             yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
 
 
@@ -137,28 +139,63 @@ def _find_assumed_ends(
         yield not abs(x - known_x) < reach_mm / 10
 
 
-def _find_upright_edges(outline: BaseGeometry) -> Array:
-    """Return the edges of an outline that are upright, as LineStrings."""
+def _find_upright_edges(outline: BaseGeometry, most_aside: float = _SQUARE) -> Array:
+    """Return the edges of an outline that are upright, as LineStrings: so much aside a height."""
     rings = shapely.get_exterior_ring(shapely.get_parts(outline))
     corners = [shapely.get_coordinates(ring) for ring in rings]
     edges = np.array([edge for ring in corners for edge in itertools.pairwise(ring)])
     edges = edges.reshape(-1, 2, 2)
     width, height = np.abs(edges[:, 1] - edges[:, 0]).T
-    return line_shapes(edges[width <= _SQUARE * height])
+    return line_shapes(edges[width <= most_aside * height])
 
 
-def _is_beside(
-    stop: tuple[float, float], upright: Array, uncertain_strip: BaseGeometry, reach_mm: float
-) -> bool:
-    """Return whether most of the side that a stop (x, y) is an end of is uncertain."""
-    x, y = stop
-    west, _, east, _ = shapely.bounds(upright).T
-    at_x = overlays.unite_lines(upright[(west - reach_mm <= x) & (x <= east + reach_mm)])
-    sides = shapely.get_parts(overlays.buffer_shapes(at_x, reach_mm))
-    side = overlays.intersect_lines(
-        at_x, overlays.unite_areas(sides[shapely.dwithin(sides, shapely.Point(x, y), reach_mm)])
-    )
-    return bool(overlays.intersect_lines(side, uncertain_strip).length > side.length / 2)
+class _Stop(NamedTuple):
+    """Where a dimension begins or ends, on turned paper; a jamb is in the middle of a facade."""
+
+    x: float
+    y: float
+    is_jamb: bool = False
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """An outline and its upright edges (k,), which ends of chains are at, on turned paper."""
+
+    outline: BaseGeometry
+    upright: Array
+    reach_mm: float
+
+    def is_most_in(self, strip: BaseGeometry, stop: _Stop) -> bool:
+        """Return whether most of the side that a stop is an end of lies in a strip.
+
+        A jamb is where its opening is, whatever its wall.
+        """
+        if stop.is_jamb:
+            return False
+        side = self._find_side(stop)
+        return bool(overlays.intersect_lines(side, strip).length > side.length / 2)
+
+    def _find_side(self, stop: _Stop) -> BaseGeometry:
+        """Return the upright side at a stop; without one what of the outline is about its place."""
+        at = shapely.Point(stop.x, stop.y)
+        west, _, east, _ = shapely.bounds(self.upright).T
+        is_at = (west - self.reach_mm <= stop.x) & (stop.x <= east + self.reach_mm)
+        at_x = overlays.unite_lines(self.upright[is_at])
+        sides = shapely.get_parts(overlays.buffer_shapes(at_x, self.reach_mm))
+        side = overlays.intersect_lines(
+            at_x, overlays.unite_areas(sides[shapely.dwithin(sides, at, self.reach_mm)])
+        )
+        if not side.is_empty:
+            return side
+        # where nothing is upright an end is a corner, maybe behind the facade that is seen
+        corners = shapely.get_coordinates(self.outline)
+        corners = corners[np.abs(corners[:, 0] - stop.x) <= self.reach_mm]
+        if len(corners):
+            at = shapely.Point(corners[np.abs(corners[:, 1] - stop.y).argmin()])
+        around = overlays.buffer_shapes(at, self.reach_mm)
+        # what is level does not say where it ends
+        rising = _find_upright_edges(self.outline, 1 / _SQUARE)
+        return overlays.intersect_lines(overlays.unite_lines(rising), around)
 
 
 def _find_facades(outline: BaseGeometry, reach_mm: float) -> list[_Facade]:
@@ -209,14 +246,14 @@ def _chain_stops(
     openings: FloatArray,
     reach_mm: float,
     ends: tuple[float, float],
-) -> list[tuple[float, float]]:
-    """Return the stops (x, y) of a chain: its ends, openings in facades, and the facades' ends.
+) -> list[_Stop]:
+    """Return the stops of a chain: its ends, openings in facades, and the facades' ends.
 
     Too near to another, whatever comes first in this order stays.
     """
     if not facades:
         return []
-    found = [(ends[0], facades[0].y0), (ends[1], facades[-1].y1)]
+    found = [_Stop(ends[0], facades[0].y0), _Stop(ends[1], facades[-1].y1)]
     for (x0, y0), (x1, y1) in openings:
         low, high = min(x0, x1), max(x0, x1)
         is_along = abs(y1 - y0) <= _SQUARE * (high - low)
@@ -226,21 +263,21 @@ def _chain_stops(
             is_in_it = facade.x0 - reach_mm <= low and high <= facade.x1 + reach_mm
             before = facade.cut(low, high)
             if is_in_it and -reach_mm <= y - before.y <= 4 * reach_mm:
-                found += [(low, before.y0), (high, before.y1)]
+                found += [_Stop(low, before.y0, True), _Stop(high, before.y1, True)]
     for facade in facades:
         for x, y in ((facade.x0, facade.y0), (facade.x1, facade.y1)):
             sides = upright[shapely.dwithin(upright, shapely.Point(x, y), reach_mm)]
-            found.append((_settle(x, sides, reach_mm), y))
-    stops: list[tuple[float, float]] = []
-    for x, y in found:
-        if all(abs(x - other) >= Paper.LEAST for other, _ in stops):
-            stops.append((x, y))
+            found.append(_Stop(_settle(x, sides, reach_mm), y))
+    stops: list[_Stop] = []
+    for stop in found:
+        if all(abs(stop.x - other.x) >= Paper.LEAST for other in stops):
+            stops.append(stop)
     return sorted(stops)
 
 
 def _draw_chain(
     page: Page,
-    stops: Sequence[tuple[float, float]],
+    stops: Sequence[_Stop],
     level: float,
     turn: FloatArray,
     space: LabelSpace,
@@ -252,18 +289,19 @@ def _draw_chain(
     """
     for start, end in itertools.pairwise(stops):
         # what has hardly any width is not measured
-        if end[0] - start[0] < Paper.GAP:
+        if end.x - start.x < Paper.GAP:
             continue
-        line = np.array([[start[0], level], [end[0], level]])
+        line = np.array([[start.x, level], [end.x, level]])
         length_mm = line[1, 0] - line[0, 0]
-        is_about = not about.isdisjoint((start[0], end[0]))
+        is_about = not about.isdisjoint((start.x, end.x))
         words = _state_length(page, length_mm, is_about=is_about)
         # beyond the chain, as extension lines are before it
         candidates = _beside_line(line @ turn, words, beyond=np.array([0.0, -1.0]) @ turn)
         chosen = space.place(candidates)
         if chosen is None:
             continue
-        yield _make_dimension(page, np.array([start, end]) @ turn, line @ turn, chosen.words[0])
+        ends = np.array([start[:2], end[:2]]) @ turn
+        yield _make_dimension(page, ends, line @ turn, chosen.words[0])
 
 
 def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:

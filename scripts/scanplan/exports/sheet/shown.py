@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.sheet import content
@@ -12,10 +13,12 @@ from scanplan.exports.sheet.openings import draw_things, list_symbols
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
-from scanplan.types import FloatArray
+from scanplan.plan.tolerances import END_M
+from scanplan.types import BoolArray, FloatArray
 
 _TYPES = {"swing": "door", "parting": "passage"}
 """Of openings, by kinds of symbols that have another name."""
+_BUILT = ("door", "window", "glass")  # openings that rooms end at even where no wall is
 
 
 @dataclass(frozen=True)
@@ -78,11 +81,20 @@ def show_measured(plan: FloorPlan) -> Shown:
     half_m = np.array([symbol.thickness_m / 2 for symbol in symbols])
     built = overlays.unite_areas([*plan.bodies, *floorplan.buffer_lines(spans_m, half_m)])
     known = overlays.unite_areas(plan.known_bodies)
-    return Shown(plan, plan, marks, symbols, _find_uncertain(plan), built, spans_m, known)
+    uncertain = find_uncertain(plan, content.is_doubtful(plan.walls))
+    return Shown(plan, plan, marks, symbols, uncertain, built, spans_m, known)
 
 
-def _find_uncertain(plan: FloorPlan) -> BaseGeometry:
-    """Return the spans of rooms' outlines that were not seen, and walls that are to be verified."""
-    unseen_m = floorplan.centrelines_m(plan.unseen)
-    doubtful = plan.bodies[content.is_doubtful(plan.walls)]
-    return overlays.unite_shapes([*floorplan.line_shapes(unseen_m), *doubtful])
+def find_uncertain(plan: FloorPlan, is_doubtful: BoolArray) -> BaseGeometry:
+    """Return where what bounds rooms is not known, and walls that are doubtful (n,).
+
+    Nothing was found there, or floor goes on, or its end is inferred.
+    """
+    is_built = np.isin(plan.openings["type"], _BUILT)
+    surfaces = plan.single("observed")
+    found = [*plan.bodies, *plan.gaps[is_built], *surfaces]
+    near = overlays.buffer_shapes(overlays.unite_shapes(found), END_M)
+    outlines = shapely.boundary(plan.areas)
+    unseen = floorplan.line_shapes(floorplan.centrelines_m(plan.unseen))
+    bare = overlays.subtract_lines(outlines, near)
+    return overlays.unite_shapes([*bare, *unseen, *plan.bodies[is_doubtful]])
