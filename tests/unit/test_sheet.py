@@ -854,3 +854,13 @@ def test_a_dimension_goes_where_it_crosses_no_door_though_its_words_lie_on_a_lin
 
     chosen = space.place([measured(10.0), measured(79.0)])
     assert chosen.words[0].place[1] == 80.5
+
+
+def test_a_word_lies_on_a_dimension_line_only_where_there_is_no_other_place():
+    space = LabelSpace((0, 0, 100, 100), [], [])
+    space.add_lines([np.array([[50.0, 0.0], [50.0, 100.0]])])
+    on, off = (Word("dimension", "1.20", np.array([x, 40.0]), 1.8) for x in (50.0, 60.0))
+    chosen = space.place([Candidate([on]), Candidate([off], 4.0)])
+    assert chosen is not None and chosen.words == [off]
+    again = space.place([Candidate([on]), Candidate([off], 4.0)])
+    assert again is not None and again.words == [on]

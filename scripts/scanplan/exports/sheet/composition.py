@@ -353,22 +353,9 @@ def _apart_m(page: Page) -> float:
 
 def _dimension_marks(page: Page, dimension: Dimension) -> Iterator[Mark]:
     line, ends = page.to_paper(dimension.line_m), page.to_paper(dimension.ends_m)
-    paths = [line]
-    along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
-    ticks = []
-    for place, end in zip(line, ends, strict=True):
-        away = place - end
-        length = np.hypot(*away)
-        if length > Paper.BEYOND:
-            direction = away / length
-            begin = min(length - Paper.BEYOND, Paper.EXTENSION)
-            paths.append(np.stack([place - begin * direction, place + Paper.BEYOND * direction]))
-        oblique = rotation(45) @ along
-        ticks.append(
-            straight(np.stack([place - Paper.TICK * oblique, place + Paper.TICK * oblique]))
-        )
+    paths, ticks = dimensions.trace_dimension(ends, line)
     yield Mark("dimension", [straight(path) for path in paths], title=f"{dimension.word.text} m")
-    yield Mark("tick", ticks)
+    yield Mark("tick", [straight(tick) for tick in ticks])
 
 
 def plan_words(sheet: Sheet) -> Iterator[Word]:

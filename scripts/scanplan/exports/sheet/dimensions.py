@@ -94,6 +94,17 @@ def dimension_facades(
     openings_m : (n, 2, 2) float
         Map frame.
     """
+    chains = [*_list_chains(page, ground, openings_m)]
+    # words keep off the lines of all of them
+    for chain in chains:
+        for ends, line in chain.list_lines():
+            space.add_lines([path for of in trace_dimension(ends, line) for path in of])
+    for chain in chains:
+        yield from _draw_chain(page, chain, space)
+
+
+def _list_chains(page: Page, ground: Ground, openings_m: FloatArray) -> Iterator["_Chain"]:
+    """Yield the chains along all four sides, each before the whole length of its side."""
     openings = page.to_paper(openings_m).reshape(-1, 2, 2)
     for quarter in range(4):
         # each side in turn is brought below
@@ -114,9 +125,9 @@ def dimension_facades(
         level = turned.reach.bounds[1]
         if len(stops) > 2:
             level -= Paper.CHAIN
-            yield from _draw_chain(page, stops, level, turn, space, about)
+            yield _Chain(stops, level, turn, about)
         if quarter in (0, 3):
-            yield from _draw_chain(page, whole, level - Paper.CHAIN, turn, space, about)
+            yield _Chain(whole, level - Paper.CHAIN, turn, about)
 
 
 def _settle(x: float, upright: Array, reach_mm: float) -> float:
@@ -275,33 +286,61 @@ def _chain_stops(
     return sorted(stops)
 
 
-def _draw_chain(
-    page: Page,
-    stops: Sequence[_Stop],
-    level: float,
-    turn: FloatArray,
-    space: LabelSpace,
-    about: set[float],
-) -> Iterator[Dimension]:
-    """Yield the dimensions of a chain, whose stops and level are on turned paper.
+@dataclass(frozen=True)
+class _Chain:
+    """Stops and level of a chain on paper that is turned, with the places (x) that are about."""
 
-    At some of its places (x) it is not known where they are.
-    """
-    for start, end in itertools.pairwise(stops):
-        # what has hardly any width is not measured
-        if end.x - start.x < Paper.GAP:
-            continue
-        line = np.array([[start.x, level], [end.x, level]])
-        length_mm = line[1, 0] - line[0, 0]
-        is_about = not about.isdisjoint((start.x, end.x))
-        words = _state_length(page, length_mm, is_about=is_about)
+    stops: Sequence[_Stop]
+    level: float
+    turn: FloatArray
+    about: set[float]
+
+    def list_spans(self) -> Iterator[tuple[_Stop, _Stop]]:
+        """Yield from where to where it measures: what has hardly any width is not."""
+        for start, end in itertools.pairwise(self.stops):
+            if end.x - start.x >= Paper.GAP:
+                yield start, end
+
+    def draw_span(self, start: _Stop, end: _Stop) -> tuple[FloatArray, FloatArray]:
+        """Return what a span measures (2, 2), and its line (2, 2), on paper."""
+        line = np.array([[start.x, self.level], [end.x, self.level]])
+        return np.array([start[:2], end[:2]]) @ self.turn, line @ self.turn
+
+    def list_lines(self) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Yield what its dimensions measure, and their lines, likewise."""
+        for span in self.list_spans():
+            yield self.draw_span(*span)
+
+
+def _draw_chain(page: Page, chain: _Chain, space: LabelSpace) -> Iterator[Dimension]:
+    """Yield the dimensions of a chain that there is room for the words of."""
+    for start, end in chain.list_spans():
+        ends, line = chain.draw_span(start, end)
+        is_about = not chain.about.isdisjoint((start.x, end.x))
+        words = _state_length(page, end.x - start.x, is_about=is_about)
         # beyond the chain, as extension lines are before it
-        candidates = _beside_line(line @ turn, words, beyond=np.array([0.0, -1.0]) @ turn)
+        candidates = _beside_line(line, words, beyond=np.array([0.0, -1.0]) @ chain.turn)
         chosen = space.place(candidates)
-        if chosen is None:
-            continue
-        ends = np.array([start[:2], end[:2]]) @ turn
-        yield _make_dimension(page, ends, line @ turn, chosen.words[0])
+        if chosen is not None:
+            yield _make_dimension(page, ends, line, chosen.words[0])
+
+
+def trace_dimension(
+    ends: FloatArray, line: FloatArray
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Return a dimension line with its extension lines, and the strokes at its ends, on paper."""
+    paths, ticks = [line], []
+    along = (line[1] - line[0]) / np.hypot(*(line[1] - line[0]))
+    oblique = rotation(45) @ along
+    for place, end in zip(line, ends, strict=True):
+        away = place - end
+        length = np.hypot(*away)
+        if length > Paper.BEYOND:
+            direction = away / length
+            begin = min(length - Paper.BEYOND, Paper.EXTENSION)
+            paths.append(np.stack([place - begin * direction, place + Paper.BEYOND * direction]))
+        ticks.append(np.stack([place - Paper.TICK * oblique, place + Paper.TICK * oblique]))
+    return paths, ticks
 
 
 def _state_length(page: Page, length_mm: float, *, is_about: bool) -> str:

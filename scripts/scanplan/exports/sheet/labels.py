@@ -16,6 +16,8 @@ from scanplan.exports.sheet.lettering import CLEAR, word_box
 from scanplan.exports.sheet.marks import Word
 from scanplan.types import FloatArray
 
+_STRUCK = 5.0  # words on lines that are added: more than any place beside a line costs
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -68,6 +70,11 @@ class LabelSpace:
         self._pale = shapely.STRtree([*pale])
         self._words = _Shapes()
         self._drawn = _Shapes()
+        self._struck = _Shapes()
+
+    def add_lines(self, lines: Iterable[FloatArray]) -> None:
+        """Add lines (n, 2) that words lie on only if they can lie nowhere else."""
+        self._struck.add([shapely.LineString(line) for line in lines])
 
     def place(self, candidates: Iterable[Candidate], most: float = np.inf) -> Candidate | None:
         """Take the cheapest candidate whose words overlap nothing; None if there is none.
@@ -98,7 +105,8 @@ class LabelSpace:
             len(self._lines.query(shapely.LineString(line), "intersects")) for line in lines
         )
         on_pale = len(self._pale.query(boxes, "intersects")[0])
-        return (self.OFF_WALL + 1) * on_walls + on_lines + 2 * crossed + on_pale
+        struck = _STRUCK * self._struck.meet(boxes)
+        return (self.OFF_WALL + 1) * on_walls + on_lines + 2 * crossed + on_pale + struck
 
     def _is_free(self, boxes: list[BaseGeometry], lines: Iterable[FloatArray]) -> bool:
         """Return whether words lie apart from words and lines, and lines apart from words."""
