@@ -764,11 +764,13 @@ def test_a_text_is_broken_between_words_once():
     assert lettering.wrap_text("one two three", 1.8, wide_mm) == ["one two", "three"]
     first, second = lettering.wrap_text("one two " * 5, 1.8, wide_mm)
     assert first == "one two" and second.endswith("…")
+    named_mm = lettering.measure_width_mm("first_floor_nor", 1.8)
+    assert lettering.wrap_text("first_floor_north", 1.8, named_mm) == ["first_floor_", "north"]
     (cut,) = lettering.wrap_text("W" * 50, 1.8, 20.0)
     assert cut.endswith("…")
 
 
-@given(st.text(st.sampled_from("AVTW.,i '’\n-"), max_size=40), st.floats(0.1, 30))
+@given(st.text(st.sampled_from("AVTW.,i '’\n+"), max_size=40), st.floats(0.1, 30))
 def test_no_letter_more_would_have_fitted(text, width_mm):
     def is_short(words):
         return lettering.measure_width_mm(words, 1.8) <= width_mm

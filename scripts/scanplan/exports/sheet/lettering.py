@@ -15,6 +15,7 @@ from scanplan.types import FloatArray
 FONT = "DejaVu Sans"
 """Of SVG, PDF and PNG: it comes with matplotlib, so that widths are the same everywhere."""
 _CAPITALS = 0.729  # height of the font's capitals as a share of its size, from its tables
+_SIGNS = "_-"  # a name without spaces is broken behind them
 POINTS_PER_MM = 72 / 25.4  # points and millimetres of an inch
 CLEAR = 0.35  # of a capital's height: kept free around words, less than the gap between lines
 
@@ -60,14 +61,22 @@ def shorten_text(text: str, capitals_mm: float, width_mm: float) -> str:
 
 
 def wrap_text(text: str, capitals_mm: float, width_mm: float) -> list[str]:
-    """Return a clean text on one line, or broken between words on two; what is over is cut off."""
+    """Return a clean text on one line, or broken between words on two; what is over is cut off.
+
+    A name without spaces is broken behind one of its signs.
+    """
     text = clean_text(text)
     n_fit = _count_fitting(len(text), lambda n: text[:n], capitals_mm, width_mm)
     if n_fit == len(text):
         return [text]
-    first = text[: n_fit + 1].rpartition(" ")[0]
+    first = text[: n_fit + 1].rpartition(" ")[0] or text[: _find_sign(text[:n_fit])]
     rest = text[len(first) :]
     return [*filter(None, [first]), shorten_text(rest, capitals_mm, width_mm)]
+
+
+def _find_sign(text: str) -> int:
+    """Return how many letters a text has up to its last sign; 0 without any."""
+    return max(text.rfind(sign) + 1 for sign in _SIGNS)
 
 
 def wrap_lines(text: str, capitals_mm: float, width_mm: float) -> list[str]:
