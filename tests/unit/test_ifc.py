@@ -7,6 +7,7 @@ import ifcopenshell.util.placement
 import ifcopenshell.validate
 import numpy as np
 import pytest
+import shapely
 from ifctester import ids as requirements
 
 from helpers import floorplan_making
@@ -14,8 +15,11 @@ from helpers.floorplan_making import bare, plan
 from helpers.ifc_volumes import volume_m3
 from scanplan.exports import ifc
 from scanplan.exports.data import element_ids
+from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
 from scanplan.exports.model_origin import ModelOrigin, Site
+from scanplan.exports.sheet.composition import compose_sheet
 from scanplan.exports.sheet.locale import Locale, make_locale
+from scanplan.project.catalogue_file import read_catalogue
 from scanplan.project.words_file import read_words
 
 pytestmark = pytest.mark.wording
@@ -510,3 +514,22 @@ def test_a_column_is_as_high_as_the_storey_and_furniture_is_left_out():
     assert volume_m3(column) == pytest.approx(0.5 * 2.5)
     assert stated["Scanplan_Evidence"]["Scans"] == 2
     assert not opened(plan(furniture=floorplan_making.furniture())).by_type("IfcColumn")
+
+
+@pytest.mark.parametrize("is_regular", [False, True])
+def test_rooms_have_their_area_between_walls_and_less_columns(is_regular):
+    post = floorplan_making.furniture([shapely.box(1, 1, 1.5, 1.5)], kind="column")
+    drawn = floorplan_making.plan(furniture=post, floor_z_m=0.0, ceiling_z_m=2.5)
+    catalogue = read_catalogue(None) if is_regular else None
+    if catalogue is not None:
+        drawn, _ = draft_plan(drawn, make_draft_settings(0.05, catalogue))
+    model = ifcopenshell.file.from_string(ifc.format_ifc(drawn, catalogue=catalogue))
+    found = {
+        space.Name: ifcopenshell.util.element.get_psets(space)["Qto_SpaceBaseQuantities"]
+        for space in model.by_type("IfcSpace")
+    }
+    areas_m2 = [(of["GrossFloorArea"], of["NetFloorArea"]) for of in found.values()]
+    assert areas_m2 == [pytest.approx((12, 11.75)), pytest.approx((9, 9))]
+    assert found["0"]["NetVolume"] == pytest.approx(11.75 * 2.5)
+    sheet = compose_sheet(drawn)
+    assert [stamp.facts["AREA"] for stamp in sheet.stamps] == ["11.8 m²", "9.0 m²"]  # 11.75

@@ -407,6 +407,17 @@ class FloorPlan:
         return shapely.from_wkb(np.asarray(self.rooms["geometry"], object))
 
     @cached_property
+    def net_areas_m2(self) -> FloatArray:
+        """How much floor each room has, (r,): between walls, less what columns stand on."""
+        areas_m2 = np.asarray(self.rooms["area_m2"], float)
+        pieces = shapely.from_wkb(np.asarray(self.furniture["geometry"], object))
+        is_column = np.asarray(self.furniture["kind"]) == schemas.COLUMN
+        if not is_column.any() or not len(areas_m2):
+            return areas_m2
+        columns = overlays.unite_areas(pieces[is_column])
+        return areas_m2 - shapely.area(overlays.intersect_areas(self.areas, columns))
+
+    @cached_property
     def hidden_floor(self) -> Array:
         """Floor of rooms that no chosen scan saw, nor furniture on it, (k,) Polygons.
 

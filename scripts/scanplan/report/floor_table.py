@@ -39,7 +39,7 @@ def describe_survey(
     row: Row = {
         **of,
         "surveyed": summarise_survey(evidence).surveyed,
-        "area_m2": round(float(plan.rooms["area_m2"].sum()), 2),
+        "area_m2": round(float(plan.net_areas_m2.sum()), 2),
         "rooms": len(plan.rooms["room"]),
         "wall_m": round(float(plan.lengths_m.sum()), 2),
         "doors": int(np.isin(kinds, ("door", "passage")).sum()),

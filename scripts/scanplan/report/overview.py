@@ -84,7 +84,7 @@ def _describe_plan(files: Mapping[str, Path]) -> Row:
     validation = tables.read_table(files["validation"], schemas.VALIDATION, allow_empty=True)
     kinds = plan.openings["type"]
     return {
-        "area_m2": float(plan.rooms["area_m2"].sum()),
+        "area_m2": float(plan.net_areas_m2.sum()),
         "rooms": len(plan.rooms["room"]),
         "open_rooms": int((~plan.rooms["closed"]).sum()),
         "walls": len(plan.walls["wall"]),

@@ -144,7 +144,7 @@ def room_table(plan: floorplan.FloorPlan) -> PageTable:
             number_cell(at["room"], 0),
             Cell(plan.room_labels[i]),
             _doubt("room", plan.rooms, i),
-            number_cell(at["area_m2"], 2),
+            number_cell(plan.net_areas_m2[i], 2),
             number_cell(at["perimeter_m"], 2),
             Cell("yes" if at["closed"] else "no"),
             number_cell(at["n_scans"], 0),

@@ -75,7 +75,7 @@ def _count(n: int, noun: str) -> str:
 
 def _state_floor(plan: floorplan.FloorPlan) -> str:
     """Return in a phrase how much floor rooms have: about so much where outlines are not closed."""
-    areas_m2 = plan.rooms["area_m2"]
+    areas_m2 = plan.net_areas_m2
     open_m2 = areas_m2[~plan.rooms["closed"].astype(bool)].sum()
     whole = f"{areas_m2.sum():,.1f} m² of floor"
     return f"about {whole} ({open_m2:,.1f} m² in rooms that are not closed)" if open_m2 else whole

@@ -11,7 +11,6 @@ from scanplan.recordings.clocks import state_date
 from scanplan.report import page_tables
 from scanplan.report.facts import PredictionFacts, SurveyFacts
 from scanplan.stage.witnesses import rank_findings
-from scanplan.types import Columns
 from scanplan.validation import doubts
 from scanplan.validation.confidence import is_planar
 from scanplan.validation.confidence_coefficients import COEFFICIENTS
@@ -119,7 +118,7 @@ def head_figures(plan: floorplan.FloorPlan, survey: SurveyFacts) -> list[tuple[s
         ("scans of the plan", f"{survey.chosen} of {len(survey.selection['rank']):,}"),
         ("length of walls", f"{page_tables.wall_lengths_m(plan).sum():,.1f} m"),
         ("median thickness", thickness),
-        ("area of rooms", _area_of_rooms(plan.rooms)),
+        ("area of rooms", _area_of_rooms(plan)),
         *placed,
         ("to verify on site", counted or "nothing that is marked"),
     ]
@@ -206,9 +205,9 @@ def _count_candidates(survey: SurveyFacts) -> tuple[int, int]:
     return int(kept.sum()), len(kept)
 
 
-def _area_of_rooms(rooms: Columns) -> str:
+def _area_of_rooms(plan: floorplan.FloorPlan) -> str:
     """Return the area of closed rooms, and of the others, whose outlines are partly a guess."""
-    closed_m2 = rooms["area_m2"][rooms["closed"]].sum()
-    open_m2 = rooms["area_m2"][~rooms["closed"]].sum()
+    is_closed = plan.rooms["closed"]
+    closed_m2, open_m2 = (plan.net_areas_m2[of].sum() for of in (is_closed, ~is_closed))
     guessed = f" and about {open_m2:,.1f} m² not closed" if open_m2 else ""
     return f"{closed_m2:,.1f} m²{guessed}"

@@ -83,7 +83,7 @@ def _draw_furniture(plan: FloorPlan) -> Iterator[Mark]:
 def _list_values(grown: Grown, facts: ComparedFacts, page: Page) -> list[list[title.Value]]:
     *alone_m, _ = sum_lengths_m(grown.contributions).tolist()
     days = ", ".join(dict.fromkeys(filter(None, facts.days)))
-    area = page.locale.area(float(np.sum(grown.plan.rooms["area_m2"])))
+    area = page.locale.area(float(grown.plan.net_areas_m2.sum()))
 
     def state_survey(row: int) -> list[title.Value]:
         saw = f"{say_count(grown.n_scans[row], 'scan')}; {page.locale.measure(alone_m[row], 1)}"

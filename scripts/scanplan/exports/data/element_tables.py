@@ -6,15 +6,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import shapely
 
 from scanplan.exports import envelope
 from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.geojson import round_value
-from scanplan.geometry import overlays
 from scanplan.plan.floorplan import WAYS, FloorPlan
-from scanplan.store import schemas
-from scanplan.types import Array, Columns, FloatArray
+from scanplan.types import Array, Columns
 
 _NOT_SHOWN = ("geometry",)
 _REFERENCES = ("wall", "face_left", "face_right", "room_a", "room_b")
@@ -61,23 +58,13 @@ def tabulate_elements(
     is_ceiling = plan.height_from == "ceiling"
     rooms["height_m"] = [height_m if is_ceiling else None] * len(plan.room_names)
     rooms["least_height_m"] = [height_m] * len(plan.room_names)
-    rooms["net_area_m2"] = np.round(_measure_net_m2(plan), 4).tolist()
+    rooms["net_area_m2"] = np.round(plan.net_areas_m2, 4).tolist()
     numbers = plan.rooms["room"].tolist()
     ways_m = [_list_widths_m(plan, room, WAYS) for room in numbers]
     rooms["n_doors"] = [len(_list_widths_m(plan, room, ("door",))) for room in numbers]
     rooms["n_ways"] = [len(widths_m) for widths_m in ways_m]
     rooms["widest_way_m"] = [_known("width_m", max(w, default=np.nan)) for w in ways_m]
     return {"walls": walls, "openings": openings, "rooms": rooms}
-
-
-def _measure_net_m2(plan: FloorPlan) -> FloatArray:
-    """Return the areas (n,) of rooms less what columns stand on."""
-    pieces = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
-    columns = overlays.unite_areas(pieces[np.asarray(plan.furniture["kind"]) == schemas.COLUMN])
-    if columns.is_empty or not len(plan.areas):
-        return np.asarray(plan.rooms["area_m2"], float)
-    taken_m2 = shapely.area(overlays.intersect_areas(plan.areas, columns))
-    return np.asarray(plan.rooms["area_m2"], float) - taken_m2
 
 
 def _list_widths_m(plan: FloorPlan, room: int, types: Sequence[str]) -> list[float]:

@@ -218,7 +218,7 @@ def _list_notes(drafted: Drafted, locale: Locale) -> list[str]:
 def _list_totals(plan: FloorPlan, locale: Locale) -> list[str]:
     """Return how much floor there is and how many doors and windows, in lines."""
     is_closed = np.asarray(plan.rooms["closed"], bool)
-    areas_m2 = np.asarray(plan.rooms["area_m2"], float)
+    areas_m2 = plan.net_areas_m2
     kinds, widths_m = plan.openings["type"], np.asarray(plan.openings["width_m"], float)
     sentences: list[str] = []
     for is_of, noun, about in ((is_closed, "closed room", ""), (~is_closed, "open room", "about ")):

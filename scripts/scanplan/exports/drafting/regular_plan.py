@@ -19,10 +19,8 @@ from scanplan.exports.drafting.square_columns import square_columns
 from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.exports.sheet.openings import state_swings
-from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
-from scanplan.store import schemas
 from scanplan.types import Columns, FloatArray, IntArray
 from scanplan.validation import doubts
 
@@ -211,14 +209,10 @@ def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
 
 
 def _move_rooms(plan: FloorPlan, moved: MovedWalls) -> Columns:
-    """Return rooms with their net areas: between surfaces of walls, less what columns stand on."""
     outlines = np.array([moved_rooms.move_outline(area, moved) for area in plan.areas], object)
-    pieces = shapely.from_wkb(np.asarray(plan.furniture["geometry"], object))
-    columns = overlays.unite_areas(pieces[plan.furniture["kind"] == schemas.COLUMN])
-    net = overlays.subtract_areas(outlines, columns) if len(outlines) else outlines
     return {
         **plan.rooms,
-        "area_m2": shapely.area(net),
+        "area_m2": shapely.area(outlines),
         "perimeter_m": shapely.length(outlines),
         "geometry": np.asarray(shapely.to_wkb(outlines), object),
     }

@@ -122,16 +122,16 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
         **describe_doubt(columns, row),
     }
     model.describe(space, EVIDENCE, properties)
-    area_m2 = float(columns["area_m2"][row])
+    area_m2, net_m2 = float(columns["area_m2"][row]), float(plan.net_areas_m2[row])
     perimeter_m = float(columns["perimeter_m"][row])
     quantities = {
         "Height": height_m,
         "GrossPerimeter": perimeter_m,
         "NetPerimeter": perimeter_m,
         "GrossFloorArea": area_m2,
-        "NetFloorArea": area_m2,
+        "NetFloorArea": net_m2,
         "GrossVolume": area_m2 * height_m,
-        "NetVolume": area_m2 * height_m,
+        "NetVolume": net_m2 * height_m,
     }
     model.measure(space, "Qto_SpaceBaseQuantities", quantities)
     return space

@@ -38,7 +38,7 @@ def stamp_rooms(
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
         number, closed = int(rooms["room"][row]), bool(rooms["closed"][row])
         about = "" if closed else "about "
-        area = f"{about}{page.locale.area(float(rooms['area_m2'][row]))}"
+        area = f"{about}{page.locale.area(float(plan.net_areas_m2[row]))}"
         name = clean_text(_name_room(page, plan, row))
         facts = {
             "NUMBER": clean_text(plan.room_numbers[row]),

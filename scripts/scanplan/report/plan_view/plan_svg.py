@@ -151,9 +151,9 @@ def draw_image(points: PointImage) -> str:
 
 def draw_labels(plan: floorplan.FloorPlan) -> Iterator[str]:
     """Write each room's name and area; its width says how much of them there is room for."""
-    rooms = (plan.rooms[c].tolist() for c in ("room", "area_m2", "closed", "x_m", "y_m"))
-    named = plan.room_labels, *rooms, plan.label_widths_m.tolist()
-    for name, room, area_m2, closed, x_m, y_m, width_m in zip(*named, strict=True):
+    rooms = (plan.rooms[c].tolist() for c in ("room", "closed", "x_m", "y_m"))
+    named = plan.room_labels, plan.net_areas_m2.tolist(), *rooms, plan.label_widths_m.tolist()
+    for name, area_m2, room, closed, x_m, y_m, width_m in zip(*named, strict=True):
         place = f'x="{format_number(x_m)}" y="{format_number(-y_m)}"'
         area = f"{'' if closed else 'about '}{area_m2:.1f} m²"
         yield (
