@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import shapely
 
+from helpers import correcting, floorplan_making
 from helpers.editing import (
     edited_json,
     entries_of,
@@ -572,3 +573,58 @@ def test_numbers_of_the_plan_come_to_the_millimetre(results):
     taken(results, edited_json(results, move_wall))
     (entry,) = entries_of(results)
     assert np.allclose(entry["line"], np.round(entry["line"], 3), atol=0)
+
+
+# --- walls of the regular drawing that are two of the plan ---
+
+
+@pytest.fixture(scope="module")
+def made_in_pieces(tmp_path_factory):
+    """Results whose south wall is in two pieces, the longer one in the west, number 0."""
+    rows = [((4.05, -0.1, -0.1, -0.1), 0.2, 7, 0, "observed"), *floorplan_making.WALLS[1:]]
+    rows.append(((7.1, -0.1, 4.05, -0.1), 0.2, -1, -1, "observed"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(correcting.MADE, "walls", lambda: floorplan_making.walls(rows))
+        return make_results(tmp_path_factory.mktemp("pieces"))
+
+
+@pytest.fixture
+def in_pieces(made_in_pieces, tmp_path):
+    shutil.copytree(made_in_pieces.parents[1], tmp_path, dirs_exist_ok=True)
+    return tmp_path / "results/office"
+
+
+def south_wall(model):
+    (wall,) = [w for w in model.by_type("IfcWall") if w.Tag == "0"]
+    assert "6" not in {w.Tag for w in model.by_type("IfcWall")}
+    return wall
+
+
+def test_a_wall_of_two_pieces_removed_from_the_regular_model(in_pieces):
+    def edit(model):
+        wall = south_wall(model)
+        (opening,) = [rel.RelatedOpeningElement for rel in wall.HasOpenings]
+        (window,) = [rel.RelatedBuildingElement for rel in opening.HasFillings]
+        for product in (window, opening, wall):
+            model.remove(product)
+
+    taken(in_pieces, edited_ifc(in_pieces, edit, "presentation.ifc"))
+    assert [(e["element"], e["action"]) for e in entries_of(in_pieces)] == [("wall", "remove")] * 2
+    assert run_again(in_pieces).walls["wall"].tolist() == [1, 2, 3, 4, 5]
+
+
+def test_a_wall_of_two_pieces_moved_in_the_regular_files(in_pieces):
+    lines_m = {
+        "0": [[4.05, -0.3], [-0.1, -0.3]],
+        "6": [[7.1, -0.3], [4.05, -0.3]],
+    }
+    edits = {
+        "presentation.ifc": lambda m: shift(south_wall(m), y=-0.2),
+        "presentation.dxf": lambda d: entity_of(d, wall=0)[0].translate(0, -0.2, 0),
+    }
+    for name, edit in edits.items():
+        edited = (edited_ifc if name.endswith("ifc") else edited_dxf)(in_pieces, edit, name)
+        write_entries(in_pieces)
+        taken(in_pieces, edited)
+        moved = [entry["line"] for entry in entries_of(in_pieces) if entry["element"] == "wall"]
+        assert np.array(moved) == pytest.approx(np.array([*lines_m.values()]), abs=0.001), name

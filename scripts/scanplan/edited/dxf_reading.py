@@ -23,6 +23,7 @@ from ezdxf.units import conversion_factor
 from scanplan.design.layer_words import kind_of_layer
 from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
+from scanplan.exports.data.element_ids import JOINED
 from scanplan.exports.dxf_document import APPLICATION, STAMP, WALL_FACT
 from scanplan.exports.sheet.symbols import AJAR
 from scanplan.project import user_file
@@ -99,7 +100,8 @@ def _list_elements(document: Document, per_unit_m: float) -> Iterator[Element]:
             elif "wall" in facts and not entity.closed and len(corners_m) > 1:
                 is_bent = any(corner[2] for corner in entity.get_points("xyb")[:-1])
                 line_m = corners_m[[0, -1]]
-                yield Element("wall", str(facts["wall"]), line_m, is_bent=is_bent)
+                joined = str(facts.get(JOINED, "")).split()
+                yield Element("wall", str(facts["wall"]), line_m, is_bent=is_bent, joined=joined)
 
 
 def _leave_holes(elements: Sequence[Element]) -> list[Element]:

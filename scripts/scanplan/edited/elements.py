@@ -33,6 +33,8 @@ class Element:
         Of an opening: the key of its wall, where the file knows it.
     is_bent : bool
         Of a wall that is curved.
+    joined : sequence of str
+        Of a wall of a regular drawing: keys of the plan's walls that are pieces of it, too.
     """
 
     kind: str
@@ -42,6 +44,7 @@ class Element:
     facts: Mapping[str, Any] = field(default_factory=dict)
     host: str = ""
     is_bent: bool = False
+    joined: Sequence[str] = ()
 
     def divide_places(self, factor: float) -> "Element":
         """Return it with its places so many times nearer to the origin; sizes stay."""

@@ -1,8 +1,8 @@
 """Changes of an edited plan as entries of corrections.yaml, joined with those that there are."""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from scanplan.edited.elements import Element
 from scanplan.plan import floorplan
 from scanplan.plan.corrections import added, outlines, things
 from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.plan.tolerances import END_M
 from scanplan.project import corrections_file
 from scanplan.project.correction_values import CORNERS
 from scanplan.project.corrections_file import OUTLINES, POINTS, SETTLE, Correction
@@ -75,7 +76,8 @@ def take_changes(plan: EditedPlan, changes: Sequence[Change], said: Said) -> Tak
     known = _find_elements(plan, said.corrections)
     # pieces of a curved wall are one wall
     groups: dict[tuple[str, str], list[Change]] = {}
-    for change in changes:
+    parted = [piece for change in changes for piece in _part_joined(plan, change)]
+    for change in parted:
         element = change.before or change.after
         assert element is not None
         key = element.key.partition("~")[0] if change.before else f"new {len(groups)}"
@@ -88,6 +90,36 @@ def take_changes(plan: EditedPlan, changes: Sequence[Change], said: Said) -> Tak
             taken.told.append(f"{words}: {reason}")
     taken.entries = [entry for entry in taken.entries if entry]
     return taken
+
+
+def _part_joined(plan: EditedPlan, change: Change) -> Iterator[Change]:
+    """Yield what became of each piece of a wall that a regular drawing has as one.
+
+    Pieces go across with it, at its ends along it, too.
+    """
+    before = change.before
+    if before is None or not before.joined:
+        yield change
+        return
+    pieces = [_move_piece(plan, change, key) for key in (before.key, *before.joined)]
+    yield from (piece for piece in pieces if list_changed(piece))
+
+
+def _move_piece(plan: EditedPlan, change: Change, key: str) -> Change:
+    before, after = change.before, change.after
+    assert before is not None and before.line_m is not None
+    piece = replace(before, key=key, joined=())
+    row = plan.find_row(piece)
+    if row is None or after is None or after.line_m is None:
+        return Change(piece, None if after is None else replace(after, key=key))
+    own_m = added.ends_of(row)
+    shares = np.clip((own_m - before.line_m[0]) @ before.along / before.length_m, 0.0, 1.0)
+    by_m = align(after.line_m, before.line_m) - before.line_m
+    moved_m = by_m[0] + shares[:, None] * (by_m[1] - by_m[0])
+    is_end = np.minimum(shares, 1 - shares) * before.length_m <= END_M
+    along_m = np.where(is_end, 0.0, moved_m @ before.along)
+    line_m = own_m + moved_m - along_m[:, None] * before.along
+    return Change(replace(piece, line_m=own_m), replace(after, key=key, line_m=line_m))
 
 
 class _NotSaidError(Exception):

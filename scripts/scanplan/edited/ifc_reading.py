@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import ifcopenshell
+import ifcopenshell.util.element
 import ifcopenshell.util.placement
 import ifcopenshell.util.unit
 import numpy as np
@@ -17,6 +18,8 @@ from scanplan.design.ifc_design import describe_opening, list_storeys
 from scanplan.design.ifc_file import IfcBuilding, IfcPart, parse_ifc
 from scanplan.edited.elements import Drawing, Element
 from scanplan.errors import StageError
+from scanplan.exports.ifc_elements.storey_plan import NOMINAL
+from scanplan.exports.ifc_elements.walls import JOINED_WALLS
 from scanplan.geometry import overlays
 from scanplan.project import user_file
 from scanplan.types import FilePath, FloatArray
@@ -64,7 +67,7 @@ def read_ifc(path: FilePath) -> Drawing:
         for wall in storey.walls
         if wall.centre_m is None and not _is_bent(model.by_guid(wall.guid))
     }
-    elements = [_wall(wall) for wall in storey.walls if wall.guid in straight]
+    elements = [_wall(model, wall) for wall in storey.walls if wall.guid in straight]
     elements += [_bent(frames, guid) for guid in _list_bent(parts, straight)]
     elements += [
         _opening(frames, opening, storey.walls[opening.wall].guid)
@@ -88,9 +91,12 @@ def read_ifc(path: FilePath) -> Drawing:
     return Drawing(elements, other, name)
 
 
-def _wall(wall: DrawnWall) -> Element:
+def _wall(model: Any, wall: DrawnWall) -> Element:
     facts = {"thickness_m": wall.thickness_m, "height_m": wall.solid.high_m}
-    return Element("wall", wall.guid, wall.line_m, facts=facts)
+    product = model.by_guid(wall.guid)
+    said = ifcopenshell.util.element.get_pset(product, NOMINAL, JOINED_WALLS) or ""
+    joined = [piece.split()[-1] for piece in str(said).split(",") if piece.strip()]
+    return Element("wall", wall.guid, wall.line_m, facts=facts, joined=joined)
 
 
 def _list_bent(parts: Mapping[str, IfcPart], straight: Container[str]) -> list[str]:

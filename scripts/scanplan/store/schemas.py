@@ -378,7 +378,7 @@ EVIDENCE = Schema(
 """Which scans show a wall of the plan, when they were taken and with how many points."""
 PRESENTATION = Schema(
     "presentation",
-    2,
+    3,
     {
         "wall": "int32",
         **_CENTRELINE,
@@ -386,6 +386,7 @@ PRESENTATION = Schema(
         "thickness_from": "string",
         **dict.fromkeys(("moved_m", "turned_deg", "thickness_changed_m"), "float64"),
         "perhaps": "bool",
+        "joined": "string",
     },
     ("wall",),
 )
@@ -395,7 +396,7 @@ PRESENTATION = Schema(
 the middle of walls. A curved wall stays as it was measured: seen from one side it has no thickness
 (NaN), and its line is that of its face.
 `moved_m` is the greatest distance that a side was moved by at an end. `perhaps`: it may be
-furniture, and is drawn as an outline.
+furniture, and is drawn as an outline. `joined`: numbers of the walls that are pieces of it.
 """
 ELEMENT_IDS = Schema(
     "element_ids",

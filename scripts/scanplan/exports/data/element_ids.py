@@ -15,6 +15,8 @@ from scanplan.types import Array, Columns, FloatArray, IntArray
 
 KINDS = ("wall", "opening", "room")
 """Tables of the plan whose elements have ids."""
+JOINED = "joined"
+"""Column of a regular plan's walls: numbers of further pieces, see `joined_walls.join_walls`."""
 _NAMESPACE = uuid.UUID("6f1c2c0e-6b0b-5f0e-9d55-3d2f6f0a7c11")  # ours, drawn once
 # IFC's own alphabet: 22 characters of 6 bits for the 128 of a UUID
 _ALPHABET = string.digits + string.ascii_uppercase + string.ascii_lowercase + "_$"
@@ -119,11 +121,18 @@ def ids_of_table(columns: Columns) -> ElementIds:
 
 
 def take_ids(ids: ElementIds, plan: FloorPlan, part: FloorPlan) -> ElementIds:
-    """Return the ids of those elements of a plan that a part of it has, by their numbers."""
+    """Return the ids of those elements of a plan that a part of it has, by their numbers.
+
+    Of a regular plan also `joined`: of each wall the numbers and ids of its further pieces.
+    """
     taken: dict[str, list[str]] = {}
     for kind in KINDS:
         of_number = dict(zip(_table(plan, kind)[kind].tolist(), ids[kind], strict=True))
         taken[kind] = [of_number[number] for number in _table(part, kind)[kind].tolist()]
+    if JOINED in part.walls:
+        of_wall = dict(zip(map(str, plan.walls["wall"].tolist()), ids["wall"], strict=True))
+        pieces = [str(numbers).split() for numbers in part.walls[JOINED]]
+        taken[JOINED] = [", ".join(f"{n} {of_wall[n]}" for n in numbers) for numbers in pieces]
     return taken
 
 

@@ -10,6 +10,7 @@ import shapely
 from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
 from scanplan.exports.drafting.adjustment import adjust_walls
 from scanplan.exports.drafting.facades import find_facades, limit_backs, measure_reveals
+from scanplan.exports.drafting.joined_walls import join_walls
 from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_stated
@@ -73,7 +74,7 @@ class Drafted:
     Attributes
     ----------
     n_walls, n_square, n_through, n_nominal : int
-        Walls, of these in a main direction, in one line with another, of a nominal thickness.
+        Walls, of these in a main direction, in one line with another piece, of a nominal thickness.
     moved_m, turned_deg, thickness_m, width_m : float
         The greatest of each change: of a wall's side, its direction, its thickness; of an opening.
     n_assumed, n_revealed, n_left_out : int
@@ -97,12 +98,13 @@ class Drafted:
 def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan, Drafted]:
     """Return a plan with regular walls, its faces, rooms and openings with them, and what changed.
 
-    Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m` and `thickness_from`,
-    openings `width_changed_m` and those of `state_swings`; `perhaps` says which walls may be
-    something else, facades apart: a building has an outline in any case. All straight walls have a
-    thickness; lines of those seen from one side are in their middle. Curved walls stay as they are:
-    those seen from one side have no thickness, and their line is their face. Other doubts are left
-    out: they stand on the sheet of what was measured.
+    Walls have the columns `moved_m`, `turned_deg`, `thickness_changed_m`, `thickness_from` and
+    `joined`, numbers of further pieces of each, openings `width_changed_m` and those of
+    `state_swings`; `perhaps` says which walls may be something else, facades apart: a building has
+    an outline in any case. All straight walls have a thickness; lines of those seen from one side
+    are in their middle. Curved walls stay as they are: those seen from one side have no thickness,
+    and their line is their face. Other doubts are left out: they stand on the sheet of what was
+    measured.
 
     Doors open as in the surveyed plan, whose leaves would say another thing of moved walls.
     """
@@ -151,7 +153,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "thickness_from": thickness_from,
         "perhaps": doubts.find_of_kind(plan.walls) & ~is_facade,
     }
-    regular = settle_loose(
+    in_pieces = settle_loose(
         replace(
             plan,
             walls=_leave_doubts({**plan.walls, **changed}),
@@ -161,12 +163,14 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
             furniture=square_columns(plan.furniture, drawn_m, settings.tolerance_m),
         )
     )
+    regular, row_of = join_walls(in_pieces)
     kinds = [
-        {wall for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
+        {row_of[wall] for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
         for kind in (DIRECTION, THROUGH, THICKNESS)
     ]
+    thickness_from = regular.walls["thickness_from"]
     drafted = Drafted(
-        len(thickness_m),
+        len(thickness_from),
         *map(len, kinds),
         moved_m=float(adjusted.moved_m.max(initial=0)),
         turned_deg=float(np.abs(turned_deg).max(initial=0)),
@@ -174,7 +178,7 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
         n_assumed=int((thickness_from == ASSUMED).sum()),
         n_revealed=int((thickness_from == REVEALS).sum()),
-        n_left_out=_count_elements(surveyed) - _count_elements(regular) + n_cut,
+        n_left_out=_count_elements(surveyed) - _count_elements(in_pieces) + n_cut,
     )
     return regular, drafted
 

@@ -5,6 +5,7 @@ from collections import defaultdict
 import numpy as np
 from ifcopenshell import entity_instance
 
+from scanplan.exports.data.element_ids import JOINED
 from scanplan.exports.ifc_elements.storey_plan import (
     EVIDENCE,
     NOMINAL,
@@ -20,6 +21,8 @@ from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
 
+JOINED_WALLS = "JoinedWalls"
+"""Property of a wall of a regular plan: numbers and GlobalIds of the walls that it is, too."""
 _STANDARD = "STANDARD"  # IFC's word for walls of one thickness along their path
 
 
@@ -164,6 +167,7 @@ def _list_changes(storey: StoreyPlan, row: int) -> dict[str, tuple[str, str | fl
         "Displacement": ("IfcLengthMeasure", float(columns["moved_m"][row])),
         "Rotation": ("IfcPlaneAngleMeasure", float(np.radians(columns["turned_deg"][row]))),
         "PerhapsFurniture": ("IfcBoolean", bool(columns["perhaps"][row])),
+        JOINED_WALLS: ("IfcText", str(storey.ids.get(JOINED, columns[JOINED])[row]) or None),
     }
 
 

@@ -30,6 +30,7 @@ _FACTS = {
         "turned_deg",
         "thickness_changed_m",
         "thickness_from",
+        "joined",
     ),
     "face": ("n_points", "n_scans", "rmse_m", "z_min_m", "z_max_m"),
     "opening": (
