@@ -102,6 +102,13 @@ def test_a_mistake_is_named_with_file_and_entry(tmp_path, old, new, named):
     assert str(path) in str(raised.value) and named in str(raised.value)
 
 
+def test_an_unknown_key_of_the_classification_is_named_with_those_that_are_known(tmp_path):
+    own = "classification: {system: X, walls: W, doors: D, windows: G, colour: red}\n"
+    path = written(tmp_path, GOOD + own)
+    with refused(file=str(path), key=("colour", "edition", "titles"), remedy="leave it out"):
+        read_catalogue(path)
+
+
 def test_a_catalogue_that_is_not_there_is_told(tmp_path):
     with refused(file="none.yaml"):
         read_catalogue(tmp_path / "none.yaml")

@@ -64,8 +64,16 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
 def _check_classification(place: str, given: object) -> dict[str, Any]:
     if given is None:
         return {}
-    if not isinstance(given, dict) or set(given) - {*_PUBLISHED, "titles"} != _SYSTEM:
-        raise StageError(f"{place} has not the keys {', '.join(sorted(_SYSTEM))}; {_REMEDY}")
+    asked, others = ", ".join(sorted(_SYSTEM)), (*_PUBLISHED, "titles")
+    if not isinstance(given, dict):
+        raise StageError(f"{place} has no keys, expected {asked}; {_REMEDY}")
+    for key in given:
+        if key not in _SYSTEM and key not in others:
+            allowed = f"{asked}, and if wanted {', '.join(others)}"
+            fault = f"has the unknown key {key!r}, allowed are {allowed}"
+            raise StageError(f"{place}: {fault}; rename it or leave it out")
+    if lacking := sorted(_SYSTEM - set(given)):
+        raise StageError(f"{place}: lacks {', '.join(lacking)}; give {asked}, {_REMEDY}")
     titles = given.get("titles", {})
     if not isinstance(titles, dict) or len(titles) > _MOST:
         raise StageError(f"{place}: titles are no `CODE: title` of at most {_MOST}; {_REMEDY}")
