@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+import shapely
 from shapely import box
 
 from helpers.ray_making import rays
-from scanplan.plan.furniture.pieces import find_pieces, pieces_in_rooms
+from scanplan.geometry.bitmap import Grid
+from scanplan.plan.furniture.pieces import _draw_outline, find_pieces, pieces_in_rooms
 
 WALLS = [box(-0.1, 0, 0, 4), box(6, 0, 6.1, 4), box(0, -0.1, 6, 0), box(0, 4, 6, 4.1)]
 ROOM = box(0, 0, 6, 4)
@@ -88,3 +90,13 @@ def test_a_front_that_one_scan_shows_is_a_piece_though_others_see_over_it():
     (piece,) = find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1, hidden=[behind])
     assert piece.n_scans == 1 and piece.outline.covers(box(2.05, 3.5, 2.95, 3.9))
     assert find_pieces(found, WALLS, [ROOM], views, max_height_m=2.1) == []
+
+
+def test_an_outline_is_valid_once_it_is_rounded():
+    # cells of 0.1 m drawn at random: many outlines touch themselves at a corner
+    grid = Grid(np.array([-10.0, -20.0]), 0.1, (12, 12))
+    rng = np.random.default_rng(1)
+    for _ in range(60):
+        is_cell = np.pad(rng.random((10, 10)) < 0.2, 1)
+        outline = _draw_outline(np.flatnonzero(is_cell), grid)
+        assert shapely.transform(outline, lambda xy_m: np.round(xy_m, 4)).is_valid

@@ -92,3 +92,14 @@ def test_furniture_is_a_polygon_with_its_evidence():
         "n_points": 60, "n_scans": 2, "named": "",
     }  # fmt: skip
     assert shapely.from_geojson(json.dumps(piece["geometry"])).area == pytest.approx(0.5)
+
+
+def test_an_outline_that_touches_itself_but_for_rounding_is_valid():
+    # two squares that meet at (1, 1), the second corner there off by a millionth of a millimetre
+    pinched = shapely.Polygon(
+        [(0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (1, 2), (1 - 1e-9, 1), (0, 1)]
+    )
+    drawn = plan(furniture=floorplan_making.furniture([pinched]))
+    (piece,) = features(drawn, "furniture")
+    shape = shapely.from_geojson(json.dumps(piece["geometry"]))
+    assert pinched.is_valid and shape.is_valid and shape.area == pytest.approx(2)

@@ -9,6 +9,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.model_origin import NOWHERE, Site
+from scanplan.geometry import overlays
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Columns
 
@@ -117,13 +118,19 @@ def format_collection(name: str, features: Iterable[Feature], **stated: object) 
 
 def make_feature(identity: str, shape: BaseGeometry, properties: Mapping[str, Any]) -> Feature:
     """Return a feature of a shape rounded to a tenth of a millimetre, and of values of a table."""
-    rounded = shapely.transform(shape, lambda xy_m: np.round(xy_m, _DIGITS) + 0.0)
     return {
         "type": "Feature",
         "id": identity,
         "properties": {name: round_value(value) for name, value in properties.items()},
-        "geometry": json.loads(shapely.to_geojson(rounded)),
+        "geometry": _format_shape(shape),
     }
+
+
+def _format_shape(shape: BaseGeometry) -> dict[str, Any]:
+    """Return a shape to a tenth of a millimetre, an area that then crosses itself parted."""
+    # the right-hand rule of RFC 7946: outlines counter-clockwise
+    rounded = shapely.orient_polygons(overlays.round_shape(shape, _DIGITS))
+    return json.loads(shapely.to_geojson(rounded))
 
 
 def _line_features(kind: str, columns: Columns) -> Iterator[Feature]:
@@ -137,13 +144,7 @@ def _line_features(kind: str, columns: Columns) -> Iterator[Feature]:
 def _polygon_features(kind: str, columns: Columns) -> Iterator[Feature]:
     polygons = shapely.from_wkb(np.asarray(columns["geometry"], object))
     for row, polygon in enumerate(polygons):
-        # the right-hand rule of RFC 7946: the outline counter-clockwise
-        rings = shapely.get_rings(shapely.orient_polygons(polygon))
-        coordinates = [
-            [[_round(x), _round(y)] for x, y in shapely.get_coordinates(ring)] for ring in rings
-        ]
-        geometry = {"type": "Polygon", "coordinates": coordinates}
-        yield _feature(kind, columns, row, geometry, {})
+        yield _feature(kind, columns, row, _format_shape(polygon), {})
 
 
 def _feature(

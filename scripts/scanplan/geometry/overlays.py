@@ -146,6 +146,20 @@ def repair_areas(areas: Shapes, **options: Any) -> Answer:
     return steps.change_each(repair, AREA, areas)
 
 
+def round_shape(shape: BaseGeometry, digits: int) -> BaseGeometry:
+    """Return a shape rounded to so many digits, an area that then crosses itself parted.
+
+    >>> pinched = shapely.Polygon([(0, 0), (1, 0), (1, 1), (2, 2), (0, 2), (1 - 1e-9, 1)])
+    >>> round_shape(pinched, 4).is_valid
+    True
+    """
+    # + 0.0 turns a negative zero into zero
+    rounded = shapely.transform(shape, lambda xy_m: np.round(xy_m, digits) + 0.0)
+    if shapely.get_dimensions(rounded) != AREA or shapely.is_valid(rounded):
+        return rounded
+    return repair_areas(rounded, method="structure", keep_collapsed=False)
+
+
 def merge_lines(lines: Shapes) -> Answer:
     """Return lines that end at one another as one."""
     return steps.change_each(shapely.line_merge, LINE, lines)

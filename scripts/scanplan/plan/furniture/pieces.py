@@ -21,6 +21,8 @@ from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.store.schemas import PIECE
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+_DIGITS = 4  # of outlines: a tenth of a millimetre, what files are rounded to
+
 
 @dataclass(frozen=True, eq=False)
 class Piece:
@@ -217,7 +219,9 @@ def _draw_outline(cells: IntArray, grid: bitmap.Grid) -> Polygon:
     drawn = overlays.simplify_shapes(
         overlays.buffer_shapes(grown, -grid.cell_m / 2, join_style="mitre"), grid.cell_m
     )
-    return max(shapely.get_parts(drawn), key=lambda part: part.area)
+    # what touches itself but for rounding would cross itself in files
+    rounded = overlays.round_shape(drawn, _DIGITS)
+    return max(shapely.get_parts(rounded), key=lambda part: part.area)
 
 
 def _middles_m(cells: IntArray, grid: bitmap.Grid) -> FloatArray:
