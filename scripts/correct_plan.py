@@ -55,6 +55,7 @@ def correct_plan(
     notes |= {"n_corrections": str(outcome.n_applied)}
     unmatched = [line.removeprefix(f"{corrections}: ") for line in outcome.unmatched]
     notes |= {"unmatched_corrections": json.dumps(unmatched)} if unmatched else {}
+    notes |= {"opened": json.dumps(outcome.opened)} if outcome.opened else {}
     notes |= _state_people(said)
     placed = ""
     if reference is not None:

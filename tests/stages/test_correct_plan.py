@@ -298,7 +298,8 @@ def test_rooms_are_open_where_the_wall_between_them_goes(plan, caplog):
     # 3 m long, less what the walls across reach over its ends
     assert_told(caplog.text, value=("room 0", "2.7 m"), remedy="merge")
     verdict = judge_plan(found)
-    assert verdict.worth == SKETCH and "Hall" in verdict.remedy
+    assert verdict.worth == SKETCH and found.opened_by_hand == [0, 1]
+    assert_told(verdict.line, value=("corrections", "Hall"), remedy="merge")
 
 
 def test_rooms_are_closed_once_they_are_one_or_parted_by_another_wall(plan):

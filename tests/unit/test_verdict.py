@@ -46,6 +46,17 @@ def test_of_many_open_rooms_the_widest_are_named():
     assert "Room 19 and others" in verdict.remedy and "Room 0," not in verdict.remedy
 
 
+def test_rooms_that_corrections_opened_are_not_blamed_on_the_recording():
+    rows = floorplan_making.rooms() | {"closed": np.array([False, False])}
+    # 12 and 9 m²: what most of the open floor is open by is named, with its rooms
+    by_hand = judge_plan(floorplan_making.plan(rooms=rows, opened_by_hand=[0]))
+    assert_told(by_hand.line, value=("corrections", "Room 0"), remedy="merge")
+    unseen = judge_plan(floorplan_making.plan(rooms=rows, opened_by_hand=[1]))
+    assert_told(unseen.line, value=("not seen", "Room 0"), remedy="look into")
+    for verdict, other in ((by_hand, "not seen"), (unseen, "corrections")):
+        assert other not in verdict.line and "Room 1" not in verdict.line
+
+
 def test_one_open_room_is_said_in_the_singular():
     gist = judged(closed=(False,), areas_m2=(9.0,)).gist
     assert_told(gist, value=("0 of 1 room is", "0%"))

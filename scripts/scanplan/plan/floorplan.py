@@ -143,6 +143,8 @@ class FloorPlan:
         How many corrections by hand are carried out in it, removals with them.
     unmatched_corrections : sequence of str
         Of each that is not, why.
+    opened_by_hand : sequence of int
+        Numbers of rooms that are open by corrections, and were closed before.
     corrected_by : str
         Who said so, and the day of the last; empty where that is not known.
     taped_m : sequence of (float, float, float)
@@ -173,6 +175,7 @@ class FloorPlan:
     georeference: GeoReference | None = None
     n_corrections: int = 0
     unmatched_corrections: Sequence[str] = ()
+    opened_by_hand: Sequence[int] = ()
     corrected_by: str = ""
     taped_m: Sequence[Sequence[float]] = ()
     scale: SurveyScale | None = None

@@ -80,6 +80,7 @@ def read_floorplan(files: Mapping[str, FilePath], name: str = "", **assumed_m: f
         georeference=GeoReference(**json.loads(reference)) if reference else None,
         n_corrections=int(notes.get("n_corrections", 0)),
         unmatched_corrections=json.loads(notes.get("unmatched_corrections", "[]")),
+        opened_by_hand=json.loads(notes.get("opened", "[]")),
         corrected_by=notes.get("corrected_by", ""),
         taped_m=json.loads(notes.get("lengths", "[]")),
         scale=read_scale(notes),

@@ -340,9 +340,9 @@ FREE = Schema("free", 3, {"part": "int32", "geometry": "binary"}, ("part",), geo
 Of the whole plan the file states `floor_z_m` and `ceiling_z_m`: heights in the map frame, NaN where
 not seen; `georeference`, where the plan lies on Earth, where reference points say so; of a
 corrected plan `n_corrections`, carried out, `unmatched_corrections`, why others are not,
-`corrected_by`, who said so and when, `lengths`, drawn, taped and the standard deviation of both,
-and `scale`, what these and reference points say of all lengths, see `survey_scale`; and
-`nearly`, what was nearly drawn: a list of `kind`, `ends_m` and `p`, JSON.
+`opened`, rooms that are open by them, `corrected_by`, who said so and when, `lengths`, drawn, taped
+and the standard deviation of both, and `scale`, what these and reference points say of all lengths,
+see `survey_scale`; and `nearly`, what was nearly drawn: a list of `kind`, `ends_m` and `p`, JSON.
 """
 PIECE, COLUMN, LEAF = "furniture", "column", "leaf"
 """Kinds of what stands in rooms: a column goes on to the ceiling, a leaf hangs at a door."""

@@ -77,10 +77,17 @@ def judge_plan(plan: FloorPlan) -> Verdict:
     gist = f"{counted} {verb} closed, {share:.0%} of the floor"
     if min(share, closed.mean()) >= _LEAST_CLOSED:
         return Verdict(PLAN, gist)
-    open_rows = np.flatnonzero(~closed)
+    by_hand = ~closed & np.isin(plan.rooms["room"], plan.opened_by_hand)
+    unseen = ~closed & ~by_hand
+    # the likelier cause is that which most of the open floor has
+    is_by_hand = bool(areas_m2[by_hand].sum() > areas_m2[unseen].sum())
+    open_rows = np.flatnonzero(by_hand if is_by_hand else unseen)
     widest = open_rows[np.argsort(-areas_m2[open_rows], kind="stable")][:MOST_NAMED]
     named = ", ".join(plan.room_labels[row] for row in sorted(widest.tolist()))
     more = " and others" if len(open_rows) > len(widest) else ""
+    if is_by_hand:
+        remedy = f"merge {named}{more} with the room beyond, or add a wall or an opening"
+        return Verdict(SKETCH, gist, "corrections took away what closed them", remedy)
     return Verdict(
         SKETCH,
         gist,

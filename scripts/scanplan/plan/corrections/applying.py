@@ -43,6 +43,8 @@ class Outcome:
         Of each that matches nothing, why.
     told : list of str
         What else follows from one.
+    opened : list of int
+        Numbers of rooms that were closed, and are open by corrections.
     lengths_m : list of (float, float, float)
         Of each taped length what is drawn, what was taped, and the standard deviation of both.
     """
@@ -50,6 +52,7 @@ class Outcome:
     n_applied: int = 0
     unmatched: list[str] = field(default_factory=list)
     told: list[str] = field(default_factory=list)
+    opened: list[int] = field(default_factory=list)
     lengths_m: list[tuple[float, float, float]] = field(default_factory=list)
 
 
@@ -93,7 +96,9 @@ def apply_corrections(rows: PlanRows, corrections: Sequence[Correction]) -> Outc
         _tell_outline(correction, "does not part the room from wall to wall")
         for correction in pending
     ]
+    closed = {room["room"] for room in rows.rooms if room["closed"]}
     for room, bare_m in enclosure.follow_enclosure(rows, enclosed, usual_m):
+        outcome.opened += [room["room"]] if room["room"] in closed else []
         fault = f"room {room['room']} is open along {bare_m:.1f} m where nothing stands any more"
         outcome.told.append(f"{fault}; merge it with the room beyond, or add a wall or an opening")
     _apply_found(rows, of_rooms, outcome)
