@@ -3,6 +3,7 @@
 import random
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ _SOUTH_M, _NORTH_M = (0.15, 4.9), (7.0, 11.85)
 _MOST_DRAWS = 100
 _DOOR_M = 0.45  # half of a door's width
 _CLEAR_M = 0.7  # of stubs from doors and windows, and of walls from one another
+_JAMB_M = 0.25  # of wall beside a door or window, at least
+_BESIDE_M = 0.45  # from where a face was: of a thick wall that was moved by the most
 _MOVES_M = (-0.3, -0.2, -0.15, -0.12, -0.1, 0.1, 0.12, 0.15, 0.2, 0.3)
 
 
@@ -53,6 +56,8 @@ _CROSSED = (
     (12.975, 17.85, 9.8, 11.0),
 )
 """Rooms: from where to where a wall goes across, and between which places along."""
+_STUBS = {(0.15, 1): 0.0, (4.9, -1): 5.0, (7.0, 1): 6.9, (11.85, -1): 12.0}
+"""Faces that stubs stand at, with the way that they go, and the middles of their walls."""
 _WALLED_UP = ([1.7, 6.9], [5.4, 6.9], [7.7, 5], [10.3, 5], [1.9, 5], [5.4, 5])
 """Doors of rooms that have another."""
 
@@ -129,24 +134,55 @@ class _Rebuilding:
         def draw() -> tuple[Point, Point] | None:
             low_m, high_m, *along_m = self._drawn.choice(_CROSSED)
             y_m = round(self._drawn.uniform(*along_m), 2)
-            return ((low_m, y_m), (high_m, y_m))
+            ends_m = ((low_m, y_m), (high_m, y_m))
+            return None if any(self._is_open(x_m, y_m, _JAMB_M) for x_m, _ in ends_m) else ends_m
 
         (low_m, y_m), (high_m, _) = self._draw(draw)
+        (low_m, west_m), (high_m, east_m) = (
+            self._find_face(low_m, -1, y_m),
+            self._find_face(high_m, 1, y_m),
+        )
         self._rows_m.append((low_m, high_m, y_m))
-        # as far as the middles of the walls beside, wherever those were moved
-        self._add([[low_m - 0.35, y_m], [high_m + 0.35, y_m]])
+        self._add([[west_m, y_m], [east_m, y_m]])
         self.edits.append(("wall", NEW, ((low_m, y_m), (high_m, y_m)), 0.0, False))
+
+    def _find_face(self, face_m: float, way: int, y_m: float) -> Point:
+        """Return where the face is now that a wall across ends at, and the middle behind it.
+
+        Both are where the face was if its wall was taken away.
+        """
+        for of in self._features:
+            if of["properties"]["kind"] != "wall":
+                continue
+            for (x_m, begin_m), (to_m, end_m) in pairwise(of["geometry"]["coordinates"]):
+                is_there = min(begin_m, end_m) <= y_m <= max(begin_m, end_m)
+                if x_m == to_m and is_there and abs(x_m - face_m) <= _BESIDE_M:
+                    return x_m - way * of["properties"]["thickness_m"] / 2, x_m
+        return face_m, face_m
+
+    def _is_open(self, x_m: float, y_m: float, clear_m: float) -> bool:
+        """Return whether a wall across of the corridor has an opening so near to a place."""
+        for of in self._features:
+            if of["properties"]["kind"] != "opening":
+                continue
+            places = np.reshape(of["geometry"]["coordinates"], (-1, 2))
+            reach_m = of["properties"].get("width_m", 0.0) / 2 + clear_m
+            is_along = places[:, 1].min() - reach_m <= y_m <= places[:, 1].max() + reach_m
+            if is_along and np.abs(places[:, 0] - x_m).max() <= _BESIDE_M:
+                return True
+        return False
 
     def _add_stub(self) -> None:
         def draw() -> tuple[Point, Point] | None:
             x_m, long_m = round(self._drawn.uniform(0.8, 16), 2), self._drawn.uniform(1.2, 2.2)
-            begin_m, way = self._drawn.choice([(0.15, 1), (4.9, -1), (7.0, 1), (11.85, -1)])
+            begin_m, way = self._drawn.choice(list(_STUBS))
             end_m = round(begin_m + way * long_m, 2)
             low_m, high_m = min(begin_m, end_m), max(begin_m, end_m)
             return _stand(x_m, low_m, high_m) if self._is_clear(x_m, low_m, high_m) else None
 
         (x_m, low_m), (_, high_m) = ends_m = self._draw(draw)
-        self._add([[x_m, low_m], [x_m, high_m]])
+        # from the middle of the wall that it stands at
+        self._add([[x_m, _STUBS.get((low_m, 1), low_m)], [x_m, _STUBS.get((high_m, -1), high_m)]])
         self.edits.append(("wall", NEW, ends_m, 0.0, False))
 
     def _is_clear(self, x_m: float, low_m: float, high_m: float) -> bool:
@@ -156,8 +192,8 @@ class _Rebuilding:
             places = of["geometry"]["coordinates"]
             if of["properties"]["kind"] == "opening":
                 there: BaseGeometry = shapely.MultiPoint(np.reshape(places, (-1, 2)))
-            elif of["properties"]["kind"] == "wall" and len({at for at, _ in places}) == 1:
-                there = shapely.LineString(places)
+            elif of["properties"]["kind"] == "wall":
+                there = shapely.MultiLineString([p for p in pairwise(places) if p[0][0] == p[1][0]])
             else:
                 continue
             if there.intersects(ground):
@@ -191,20 +227,29 @@ class _Rebuilding:
         self.edits.append(("opening", GONE, ends_m, 0.0, False))
 
     def _break_through(self) -> None:
-        of = self._take_partition()
-        low_m, high_m = of.span_m
-        y_m = round(self._drawn.uniform(low_m + 1.6, high_m - 1.2), 2)
+        def draw() -> tuple[Point, Point] | None:
+            of = self._drawn.choice(self._free)
+            low_m, high_m = of.span_m
+            y_m = round(self._drawn.uniform(low_m + 1.6, high_m - 1.2), 2)
+            is_met = any(
+                min(abs(low_m - of.x_m), abs(high_m - of.x_m)) <= _BESIDE_M
+                and abs(row_m - y_m) <= _DOOR_M + _JAMB_M
+                for low_m, high_m, row_m in self._rows_m
+            )
+            if is_met or self._is_open(of.x_m, y_m, _DOOR_M + _JAMB_M):
+                return None
+            return _stand(of.x_m, y_m - _DOOR_M, y_m + _DOOR_M)
+
+        (x_m, low_m), (_, high_m) = ends_m = self._draw(draw)
         properties = {"kind": "opening", "type": "door", "width_m": 2 * _DOOR_M}
         self._features.append(
             {
                 "type": "Feature",
                 "properties": properties | {"sill_m": 0, "lintel_m": 2.05},
-                "geometry": {"type": "Point", "coordinates": [of.x_m, y_m]},
+                "geometry": {"type": "Point", "coordinates": [x_m, (low_m + high_m) / 2]},
             }
         )
-        self.edits.append(
-            ("opening", NEW, _stand(of.x_m, y_m - _DOOR_M, y_m + _DOOR_M), 0.0, False)
-        )
+        self.edits.append(("opening", NEW, ends_m, 0.0, False))
 
 
 def _stand(x_m: float, low_m: float, high_m: float) -> tuple[Point, Point]:
