@@ -48,7 +48,9 @@ def floor(south_m=ROOMS_M, north_m=ROOMS_M, doors_m=(DOORS_M, DOORS_M)):
             normals.append(side)
     bodies = shapely.union_all([shapely.LineString(line).buffer(HALF_M) for line in inner])
     n = len(ends)
-    faces = SeenFaces(np.array(ends), np.array(normals), np.full(n, 0.005), np.arange(n))
+    faces = SeenFaces(
+        np.array(ends), np.array(normals), np.full(n, 0.005), np.arange(n), np.ones(n)
+    )
     ways = [
         ((x_m - 0.45, y_m), (x_m + 0.45, y_m))
         for y_m, at_m in zip(CORRIDOR_M, doors_m, strict=True)

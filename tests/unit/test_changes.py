@@ -97,6 +97,17 @@ def test_a_wall_that_moved_does_not_move_the_frame():
     assert ((sigma_m > 1e-3) & (sigma_m < 0.02)).all()
 
 
+@pytest.mark.parametrize(("p_true", "is_bent"), [(0.1, False), (0.99, True)])
+def test_furniture_that_was_carried_says_nothing_of_how_bent_maps_are(p_true, is_bent):
+    fronts = [(x_m, 1, x_m, 3.5) for x_m in (2.0, 6.5)]
+    carried = [(x_m + 0.3, *rest, x_m + 0.3, y_m) for x_m, *rest, _, y_m in fronts]
+    before, after = (survey([INNER, *of], []) for of in (fronts, carried))
+    for of in (before, after):
+        of.plan.walls["p_true"][5:] = p_true
+    scatter_m = fit_frame(before.faces, after.faces, STILL).scatter_m
+    assert scatter_m > 0.1 if is_bent else scatter_m < 0.01
+
+
 def test_frames_that_are_one_are_said_to_be_without_a_minus():
     found = tie(survey(), survey())
     nearly = replace(found.fit, motion=PlaneMotion(-1e-9, -1e-9, -1e-9))
@@ -208,6 +219,38 @@ def test_a_wall_whose_other_side_stands_has_not_moved_from_what_stood_before_it(
     number = cupboard.number_a if is_earlier else cupboard.number_b
     assert cupboard.verdict == (GONE if is_earlier else verdicts.NEW) and number == 5
     assert {c.number_a for c in changes if c.table == "wall" and c.verdict == SAME} == set(range(5))
+
+
+def seen_between(of, number, low_m, high_m):
+    """A survey whose plan has seen the sides of a wall from one place up to another only."""
+    faces = of.plan.faces
+    is_its = (faces["wall"] == number) & ~np.isclose(faces["y0_m"], faces["y1_m"])
+    cut = {name: np.where(is_its, faces[name].clip(low_m, high_m), faces[name]) for name in Y_M}
+    return replace(of, plan=replace(of.plan, faces={**faces, **cut}))
+
+
+def test_what_stands_behind_a_door_that_was_broken_through_is_not_its_wall():
+    # a longer front than what was seen of the wall beside the door
+    after = seen_between(survey([INNER, (5.4, 2.5, 5.4, 4.1)]), 4, 2.4, 3.0)
+    after.plan.walls["p_true"][5] = 0.1
+    changes = compare(survey(doors=[]), after)
+    assert {c.number_b for c in changes if c.table == "wall" and c.number_a == 4} == {4, -1}
+    (door,) = told(changes, "opening")
+    assert (door.verdict, door.is_change) == (NEW, True)
+
+
+@pytest.mark.parametrize("by_m", [-0.12, 0.12])
+def test_the_rest_of_a_wall_that_moved_has_where_returns_lie_as_far_beside_it(by_m):
+    before = survey(doors=[])
+    after = seen_between(survey([(5 + by_m, 0, 5 + by_m, 5)], []), 4, 3.0, 5.0)
+    changed = {
+        c.verdict: c.shape.length for c in told(compare(before, after), "wall") if c.is_change
+    }
+    assert changed == pytest.approx({MOVED: 2.0, GONE: 3.0, NEW: 3.0}, abs=0.25)
+    # of one that has moved in part the rest stands
+    half = seen_between(survey([(5 + by_m, 2.9, 5 + by_m, 5), (5, 0, 5, 2.9)], []), 5, 0.0, 0.3)
+    (stands,) = [c for c in compare(before, half) if (c.number_a, c.verdict) == (4, SAME)]
+    assert stands.shape.length > 2
 
 
 def test_a_shift_within_its_error_is_none():

@@ -143,7 +143,9 @@ def _conclude(a: SeenFaces, b: SeenFaces, motion: PlaneMotion, centre_m: FloatAr
     # of how many faces a wall was seen says nothing of how bent maps are
     of_wall = a.wall[pairs.a] + 1
     n_faces = np.where(of_wall > 0, np.bincount(of_wall)[of_wall], 1)
-    by_wall = weight / np.tile(n_faces, 2)
+    # nor does furniture, which is carried
+    p_walls = a.p_wall[pairs.a] * b.p_wall[pairs.b]
+    by_wall = weight * np.tile(p_walls / n_faces, 2)
     scales_m = _scale_m(off_m, weight, _HALF), _scale_m(off_m, by_wall, _MOST)
     scale_m = max(*scales_m, _LEAST_SCATTER_M)
     beyond_m2 = scale_m**2 - float(np.median(stated_m2))

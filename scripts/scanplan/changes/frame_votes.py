@@ -27,7 +27,7 @@ def list_motions(a: SeenFaces, b: SeenFaces) -> list[PlaneMotion]:
 
     >>> square = np.array([[[0, 0], [4, 0]], [[4, 0], [4, 3]], [[4, 3], [0, 3]], [[0, 3], [0, 0]]])
     >>> normal = np.array([[0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 0.0]])
-    >>> room = SeenFaces(square.astype(float), normal, np.full(4, 0.01), np.arange(4))
+    >>> room = SeenFaces(square.astype(float), normal, np.full(4, 0.01), np.arange(4), np.ones(4))
     >>> shifted = room.moved(PlaneMotion(0.0, -2.0, 1.0))
     >>> best = list_motions(room, shifted)[0]
     >>> abs(best.x_m - 2) < 0.2, abs(best.y_m + 1) < 0.2

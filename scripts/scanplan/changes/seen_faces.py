@@ -28,12 +28,15 @@ class SeenFaces:
         Standard deviation of its offset.
     wall : (n,) int64
         Number of its wall, -1 of none.
+    p_wall : (n,) float64
+        How likely that is a wall, 0 of none.
     """
 
     ends_m: FloatArray
     normal: FloatArray
     sigma_m: FloatArray
     wall: IntArray
+    p_wall: FloatArray
 
     @cached_property
     def length_m(self) -> FloatArray:
@@ -58,20 +61,24 @@ class SeenFaces:
 
     def select(self, rows: BoolArray | IntArray) -> "SeenFaces":
         """Return some of them."""
-        return SeenFaces(self.ends_m[rows], self.normal[rows], self.sigma_m[rows], self.wall[rows])
+        return SeenFaces(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
 
 
 def list_seen_faces(plan: FloorPlan) -> SeenFaces:
     """Return the observed faces of a plan that are long enough to have a direction."""
     ends_m = centrelines_m(plan.faces)
-    of_wall = dict(zip(plan.walls["wall"].tolist(), plan.walls["sigma_offset_m"], strict=True))
+    numbers = plan.walls["wall"].tolist()
+    of_wall = dict(zip(numbers, plan.walls["sigma_offset_m"], strict=True))
+    rated = np.nan_to_num(np.asarray(plan.walls["p_true"], float), nan=1.0)
+    p_of_wall = dict(zip(numbers, rated.tolist(), strict=True))
     own_m = plan.faces["rmse_m"] / np.sqrt(np.maximum(plan.faces["n_scans"], 1))
     wall = plan.faces["wall"].astype(np.int64)
     sigma_m = [of_wall.get(w, s) for w, s in zip(wall.tolist(), own_m.tolist(), strict=True)]
     is_wanted = (plan.faces["state"] == "observed") & (line_lengths_m(ends_m) >= _LEAST_LENGTH_M)
     normal = np.column_stack([plan.faces["nx"], plan.faces["ny"]])
     sigma_m = np.maximum(np.nan_to_num(sigma_m, nan=_LEAST_SIGMA_M), _LEAST_SIGMA_M)
-    return SeenFaces(ends_m, normal, sigma_m, wall).select(is_wanted)
+    p_wall = np.array([p_of_wall.get(w, 0.0) for w in wall.tolist()])
+    return SeenFaces(ends_m, normal, sigma_m, wall, p_wall).select(is_wanted)
 
 
 @dataclass(frozen=True, eq=False)

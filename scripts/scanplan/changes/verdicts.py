@@ -219,9 +219,17 @@ def rate_shift(
 
 def weigh_shift(shift_m: float, sigma_m: float, n_shown: int, wrong: float = _WRONG) -> float:
     """Return how many times as likely a shift is of what has moved as of what has not."""
-    density = math.exp(-0.5 * (shift_m / sigma_m) ** 2) / (sigma_m * math.sqrt(2 * math.pi))
     wrong = wrong**n_shown
-    return 1 / (2 * REACH_M * (1 - wrong) * density + wrong)
+    return 1 / ((1 - wrong) * weigh_along(shift_m, sigma_m) + wrong)
+
+
+def weigh_along(off_m: float, sigma_m: float) -> float:
+    """Return how many times as likely what stands at a place lies so far off as what is anywhere.
+
+    Within `REACH_M`, that is.
+    """
+    density = math.exp(-0.5 * (off_m / sigma_m) ** 2) / (sigma_m * math.sqrt(2 * math.pi))
+    return 2 * REACH_M * density
 
 
 def rate_along(weights: Sequence[float]) -> FloatArray:

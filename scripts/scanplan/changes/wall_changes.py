@@ -116,13 +116,13 @@ def _judge_walls(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[_Judged
         compared = ray_cells.compare_looks(earlier, later)
         state = np.select(
             [
-                np.isfinite(found.shift_m),
                 _cover(wall, others_m),
+                np.isfinite(found.shift_m),
                 compared.is_passed,
                 compared.is_lowered,
                 compared.is_hit,
             ],
-            [MATCHED, IN_OPENING, PASSED, LOWERED, HIT],
+            [IN_OPENING, MATCHED, PASSED, LOWERED, HIT],
             UNKNOWN,
         )
         is_open = _cover(wall, own_m[of.plan.openings["wall"] == wall.number])
@@ -138,7 +138,7 @@ def _judge_walls(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[_Judged
                 stretches.append(replace(stretch, weight=weight))
             else:
                 stretch = replace(stretch, kind=HIT if kind == MATCHED else kind)
-                stretches.append(weigh_rays(stretch, (of, by), compared, sigma_m))
+                stretches.append(weigh_rays(stretch, (of, by), compared, sigma_m, found.moved_m))
         rated = verdicts.rate_along([stretch.weight for stretch in stretches])
         yield _Judged(wall, found, is_open, stretches, rated.tolist())
 

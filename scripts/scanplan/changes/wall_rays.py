@@ -42,7 +42,11 @@ class Stretch:
 
 
 def weigh_rays(
-    of: Stretch, surveys: tuple[Survey, Survey], later: Later, sigma_m: float
+    of: Stretch,
+    surveys: tuple[Survey, Survey],
+    later: Later,
+    sigma_m: float,
+    moved_m: float = math.nan,
 ) -> Stretch:
     """Return a stretch of a wall of the first survey with what rays of the second show of it.
 
@@ -52,6 +56,8 @@ def weigh_rays(
         What the second shows of the cells of the wall.
     sigma_m : float
         What faces of both surveys err by.
+    moved_m : float
+        How far the rest of the wall has moved to its left; NaN where it has not.
     """
     is_of_it = np.zeros(of.wall.n_cells, bool)
     is_of_it[of.cells] = True
@@ -67,8 +73,9 @@ def weigh_rays(
         return replace(of, kind=BEHIND, weight=verdicts.weigh_passing(n_passing + n_ending, 0))
     weight = verdicts.weigh_passing(n_passing, n_ending)
     if of.kind == HIT:
-        stands = _STANDS * _weigh_returns(of, surveys[1], sigma_m)
-        weight = max(weight, min(stands, 1.0))
+        stands = _weigh_returns(of, surveys[1], sigma_m)
+        along = _weigh_moved(of, surveys[1], sigma_m, moved_m)
+        weight = max(weight, min(_STANDS * stands, 1.0), along * stands)
     return replace(of, weight=1.0 if of.kind == UNKNOWN else weight)
 
 
@@ -100,6 +107,18 @@ def _weigh_returns(of: Stretch, survey: Survey, sigma_m: float) -> float:
     if not off_m:
         return 1.0
     return verdicts.weigh_shift(float(np.median(np.concatenate(off_m))), sigma_m, len(off_m))
+
+
+def _weigh_moved(of: Stretch, survey: Survey, sigma_m: float, moved_m: float) -> float:
+    """Return how many times as likely it lies so if it has moved as the rest has, and not anywhere.
+
+    0 where the rest has not.
+    """
+    left_m, right_m = (of_side[np.isfinite(of_side)] for of_side in _place_returns(of, survey))
+    off_m = np.concatenate([left_m, -right_m])
+    if math.isnan(moved_m) or len(off_m) < FEW:
+        return 0.0
+    return verdicts.weigh_along(float(np.median(off_m)) - moved_m, sigma_m)
 
 
 def _lies_behind(of: Stretch, surveys: tuple[Survey, Survey]) -> bool:

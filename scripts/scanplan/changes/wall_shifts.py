@@ -42,6 +42,12 @@ class WallShifts:
         """Which cells (c,) have moved by more than shifts err by."""
         return np.abs(self.shift_m) > SIGMAS * self.sigma_m
 
+    @property
+    def moved_m(self) -> float:
+        """How far most of what has moved has done so to the left; NaN where nothing has."""
+        moved_m = self.shift_m[self.is_moved]
+        return float(np.median(moved_m)) if len(moved_m) else math.nan
+
     def sum_up(self, cells: slice) -> tuple[float, float, int]:
         """Return by how much a stretch is shifted, what that errs by, and how many show it."""
         known = np.isfinite(self.shift_m[cells])
@@ -60,8 +66,8 @@ def find_shifts(wall: Wall, shifts: FaceShifts) -> WallShifts:
     is_vacated = np.zeros(wall.n_cells, bool)
     turned = np.abs(shifts.faces.normal[pairs.a] @ wall.line.normal)
     rows = np.flatnonzero((shifts.faces.wall[pairs.a] == wall.number) & (turned >= _COSINE))
-    # the longest last, so that it stands where several lie over one another
-    for row in rows[np.argsort(pairs.length_m[rows], kind="stable")].tolist():
+    # the nearest last, so that it stands where several lie over one another: behind is furniture
+    for row in rows[np.argsort(-np.abs(pairs.shift_m[rows]), kind="stable")].tolist():
         face = int(pairs.a[row])
         centre_m, along = shifts.faces.ends_m[face].mean(axis=0), shifts.faces.along[face]
         ends_m = centre_m + np.array([[pairs.low_m[row]], [pairs.high_m[row]]]) * along
