@@ -243,6 +243,20 @@ def test_names_are_in_the_language_but_for_those_of_a_person():
     assert walls[1] == "Wand 1, außen, Dicke angenommen" and walls[5] == "Wand 5, innen, 10 cm"
 
 
+@pytest.mark.parametrize("language", ["de", "es", "fr"])
+def test_no_name_of_an_element_stays_english(language):
+    def list_names(locale):
+        tables = SEEN | {"furniture": floorplan_making.furniture(kind="column")}
+        model = opened(plan(**tables), origin=ModelOrigin(locale=locale))
+        kinds = ("IfcBuildingElement", "IfcElementType", "IfcOpeningElement", "IfcMaterial")
+        found = {of.Name for kind in kinds for of in model.by_type(kind)}
+        return {name for name in found if name and any(map(str.isalpha, name))}
+
+    english = list_names(make_locale("m", None))
+    assert len(english) > 15
+    assert english & list_names(make_locale("m", read_words(language))) == set()
+
+
 def test_names_say_what_an_element_is_by_the_number_that_tables_have():
     rooms = floorplan_making.rooms() | {"name": np.array(["Foyer", ""], object)}
     walls = floorplan_making.walls() | {"top_m": np.array([np.nan] * 5 + [1.2])}

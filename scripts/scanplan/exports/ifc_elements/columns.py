@@ -25,7 +25,7 @@ def _add_column(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instanc
     column = model.root(
         "IfcColumn",
         (round(place.x, 2), round(place.y, 2)),
-        Name=f"Column {number}",
+        Name=f"{model.origin.locale.say('column').capitalize()} {number}",
         Tag=number,
         ObjectPlacement=frame.placement(model),
         PredefinedType="COLUMN",

@@ -33,11 +33,12 @@ def _add_piece(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     number = str(columns["furniture"][row])
     place = outline.centroid
     named = str(columns["named"][row])
+    noun = model.origin.locale.say(named or "furniture").capitalize()
     ifc_class, predefined = _CLASSES.get(named, ("IfcFurniture", "NOTDEFINED"))
     piece = model.root(
         ifc_class,
         (round(place.x, 2), round(place.y, 2)),
-        Name=f"{(named or 'furniture').capitalize()} {number}",
+        Name=f"{noun} {number}",
         Tag=number,
         ObjectPlacement=model.placement((0, 0, 0), (1, 0), model.storey.ObjectPlacement),
         PredefinedType=predefined,

@@ -96,7 +96,8 @@ def _add_opening(
         hole = frame.move_here(plan.gaps[row])
         void = _add_void(model, own_id, hole, extent_m, attributes)
         if kind in _FILLED_BY:
-            void.Name = f"Opening of {kind} {attributes['Tag']}"
+            said = model.origin.locale.say
+            void.Name = f"{said('Opening of')} {said(kind)} {attributes['Tag']}"
         model.join("IfcRelVoidsElement", void, RelatingBuildingElement=walls[host])
         _describe_opening(model, storey, row, void)
         cut = overlays.intersect_areas(plan.bodies[host], plan.gaps[row])
@@ -252,9 +253,11 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
             fillings_of[kind, width_m, operation, name].append(filling)
     for (kind, width_m, operation, listed), fillings in sorted(fillings_of.items()):
         of_doors = kind == "door"
-        name = listed or f"{kind.capitalize()} {model.origin.locale.size(width_m)}"
+        locale = model.origin.locale
+        name = listed or f"{locale.say(kind).capitalize()} {locale.size(width_m)}"
         if operation != "NOTDEFINED":
-            name += ", " + operation.lower().replace("_", " ").replace("userdefined", "sliding")
+            words = operation.lower().replace("_", " ").replace("userdefined", "sliding")
+            name += f", {locale.say(words)}"
         attributes = {"PredefinedType": "DOOR" if of_doors else "WINDOW"}
         attributes |= _state_operation(operation) if of_doors else {"PartitioningType": operation}
         product_type = model.root(f"{_FILLED_BY[kind]}Type", (name,), Name=name, **attributes)

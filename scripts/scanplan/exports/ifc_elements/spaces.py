@@ -33,9 +33,11 @@ def add_floors(model: IfcModel, storey: StoreyPlan) -> list[entity_instance]:
         slab = model.root(
             "IfcSlab",
             (number,),
-            Name="Floor slab"
-            if len(parts) == 1
-            else f"Floor slab, part {number + 1} of {len(parts)}",
+            Name=model.origin.locale.say(
+                "Floor slab"
+                if len(parts) == 1
+                else f"Floor slab, part {number + 1} of {len(parts)}"
+            ),
             ObjectPlacement=_on_floor(model),
             PredefinedType="FLOOR",
         )
@@ -76,7 +78,7 @@ def add_ceilings(
         ceiling = model.root(
             "IfcCovering",
             (space.GlobalId,),
-            Name=f"Ceiling of {space.LongName}",
+            Name=f"{model.origin.locale.say('Ceiling of')} {space.LongName}",
             ObjectPlacement=_on_floor(model),
             PredefinedType="CEILING",
         )

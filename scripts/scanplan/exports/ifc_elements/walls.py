@@ -180,9 +180,12 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
         # what is assumed is of no maker
         rows_of[is_thick, thickness_m, name if is_thick else ""].append(row)
     for (is_thick, thickness_m, listed), rows in sorted(rows_of.items()):
-        assumed = "" if is_thick else ", thickness assumed"
-        name = (listed or f"Wall {model.origin.locale.size(thickness_m)}") + assumed
-        material = model.new("IfcMaterial", "Not known" + assumed, None, "not known")
+        locale = model.origin.locale
+        assumed = "" if is_thick else f", {locale.say('thickness assumed')}"
+        own = f"{locale.say('wall').capitalize()} {locale.size(thickness_m)}"
+        name = (listed or own) + assumed
+        not_known = locale.say("not known").capitalize() + assumed
+        material = model.new("IfcMaterial", not_known, None, "not known")
         layer = model.new("IfcMaterialLayer", material, thickness_m)
         layers = model.new("IfcMaterialLayerSet", [layer], name)
         predefined = _STANDARD if model.is_editable else "NOTDEFINED"
