@@ -13,9 +13,26 @@ from helpers.refusals import assert_told
 pytestmark = pytest.mark.workflow
 
 
+@pytest.fixture(scope="module")
+def copied(project_root, tmp_path_factory):
+    return Project(project_root, tmp_path_factory.mktemp("bad input"))
+
+
 @pytest.fixture
-def project(project_root, tmp_path):
-    return Project(project_root, tmp_path)
+def project(copied):
+    """The copy, from which all that a test has made goes."""
+    before = set(copied.folder.iterdir())
+    yield copied
+    for path in set(copied.folder.iterdir()) - before:
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+
+
+@pytest.fixture
+def tmp_path(project):
+    return project.folder
 
 
 def ends_with_one_line(project, dataset, *said, left=()):
