@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from helpers.project_copy import Project
-from scanplan.store import tables
+from scanplan.store import schemas, tables
 
 pytestmark = [pytest.mark.workflow, pytest.mark.recordings]
 
@@ -21,7 +21,7 @@ def project(project_root, recordings_dir, tmp_path_factory):
     made = project.run("--config", f"dataset={json.dumps(both[:1])}")
     assert made.returncode == 0, made.stdout + made.stderr
     # all later stages read nothing but what these tables hold
-    wanted = [f"results/jackal_ros2/{file}" for file in ("scans.parquet", "plan/plan.geojson")]
+    wanted = [f"results/jackal_ros2/{table}.parquet" for table in ("scans", "registration")]
     same = project.run(*wanted, "--config", f"dataset={json.dumps(both)}")
     assert same.returncode == 0, same.stdout + same.stderr
     return project
@@ -38,12 +38,16 @@ def plan(project, name):
     ]
 
 
-def test_ros1_and_ros2_give_the_same_scans_and_the_same_plan(project):
-    scans = [pq.read_table(project.folder / f"results/jackal_ros{n}/scans.parquet") for n in (1, 2)]
+def test_ros1_and_ros2_give_the_same_scans_and_poses_to_make_a_plan_of(project):
+    folders = [project.folder / f"results/jackal_ros{n}" for n in (1, 2)]
+    scans = [pq.read_table(folder / "scans.parquet") for folder in folders]
     assert scans[0].equals(scans[1])
-    assert [w.wkt for w in plan(project, "jackal_ros1")] == [
-        w.wkt for w in plan(project, "jackal_ros2")
+    registered = [
+        tables.read_table(folder / "registration.parquet", schemas.REGISTRATION)
+        for folder in folders
     ]
+    for name, values in registered[0].items():
+        np.testing.assert_array_equal(values, registered[1][name])
 
 
 def test_the_arena_has_its_six_walls_once_each(project):
