@@ -1,7 +1,6 @@
 """A copy of the project to run the whole workflow in."""
 
 import hashlib
-import multiprocessing
 import os
 import shutil
 import subprocess
@@ -9,14 +8,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from helpers.warm_python import serve_python
+
 TINY = "tests/data/tiny.yaml"
-_ROOT = Path(__file__).resolve().parents[2]
-_STARTER = multiprocessing.get_context("forkserver")
-_STARTER.set_forkserver_preload(
-    ["snakemake.cli", "snakemake.report.html_reporter", "jsonschema", "numpy", "yaml"]
-)
-
-
 _CODE = ("Snakefile", "workflow", "scripts", "config", "tests/data", "profiles")
 _MADE = (".snakemake", "benchmarks", "logs", "results")
 
@@ -37,22 +31,16 @@ class Project:
             else:
                 shutil.copy2(source, target)
 
-    def command(self, *arguments):
+    def command(self, *arguments, cores=1):
         settings = () if "--configfile" in arguments else ("--configfile", TINY)
-        return [sys.executable, "-m", "snakemake", *settings, "--cores", "2", *arguments]
+        return [sys.executable, "-m", "snakemake", *settings, "--cores", str(cores), *arguments]
 
-    def run(self, *arguments):
-        """Run Snakemake in a process that has read it already: half of what a dry run takes."""
-        command = self.command(*arguments)
-        with tempfile.TemporaryDirectory() as said:
-            streams = [Path(said, name) for name in ("stdout", "stderr")]
-            started = _STARTER.Process(
-                target=_run_snakemake, args=(command, self.folder, self.env(), streams)
-            )
-            started.start()
-            started.join()
-            stdout, stderr = (stream.read_text(encoding="utf-8") for stream in streams)
-        return subprocess.CompletedProcess(command, started.exitcode, stdout, stderr)
+    def run(self, *arguments, cores=1):
+        """Run Snakemake, and its stages, in processes that have read the libraries already.
+
+        Files of tests run side by side, and a stage with one core begins no processes of its own.
+        """
+        return run_python(self.folder, self.command(*arguments, cores=cores)[1:], self.env())
 
     def env(self):
         return {**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
@@ -76,20 +64,8 @@ class Project:
         }
 
 
-def _run_snakemake(command, folder, env, streams):
-    """Run a command `python -m snakemake ...` in this process, which is a new one."""
-    os.chdir(folder)
-    os.environ.clear()
-    os.environ.update(env)
-    for stream, path in zip((sys.stdout, sys.stderr), streams, strict=True):
-        written = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        os.dup2(written, stream.fileno())
-    # as if this were not the tests': their code is not the copy's
-    ours = {os.fspath(_ROOT / name) for name in ("", "scripts", "tests")}
-    sys.path[:] = [os.fspath(folder), *(place for place in sys.path if place not in ours)]
-    sys.argv = command[command.index("snakemake") :]
-    # a run that goes on without a failed stage begins again by these
-    sys.orig_argv[:] = command
-    from snakemake.cli import main
-
-    main()
+def run_python(folder, arguments, env):
+    """Run Python as a process that has read the libraries already; return it as completed."""
+    with tempfile.TemporaryDirectory() as place, serve_python(place) as python:
+        command = [python, *arguments]
+        return subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True)

@@ -2,7 +2,7 @@
 
 import json
 import shutil
-import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -21,6 +21,7 @@ from helpers.pages import (
     text_of,
 )
 from helpers.serving import serving
+from helpers.warm_python import serve_python
 from scanplan.project.corrections_file import read_corrections
 from scanplan.project.run.edit_session import EditSession
 
@@ -53,8 +54,14 @@ DOOR = {"element": "opening", "action": "add", "kind": "door", "line": [[4.05, -
 FAR = {"element": "wall", "action": "add", "line": [[300, 0], [304, 0]]}
 
 
+@pytest.fixture(scope="module")
+def python():
+    with tempfile.TemporaryDirectory() as folder, serve_python(folder) as program:
+        yield program
+
+
 @pytest.fixture
-def served(chromium, tmp_path):
+def served(chromium, python, tmp_path):
     """The page of a plan whose corrections a run carries out, and where they are saved."""
     results, recording = tmp_path / "results/office", tmp_path / "recording"
     for folder in (results, recording, tmp_path / "other"):
@@ -66,7 +73,8 @@ def served(chromium, tmp_path):
     shutil.copy(first, results / "report.html")
     corrections = recording / "corrections.yaml"
     given = [str(path) for path in (tmp_path, corrections, results / "report.html")]
-    run = [sys.executable, "-c", RUN.format(paths=PATHS), *given]
+    (tmp_path / "run.py").write_text(RUN.format(paths=PATHS))
+    run = [python, str(tmp_path / "run.py"), *given]
     with serving(EditSession(results, run)) as server:
         chromium.open(server.address)
         settle(chromium, "!document.getElementById('save').hidden")

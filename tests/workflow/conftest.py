@@ -18,7 +18,7 @@ def planned(project_root, tmp_path_factory):
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not (folder / "said.txt").exists():
-            made = Project(project_root, folder).run()
+            made = Project(project_root, folder).run(cores=2)
             assert made.returncode == 0, made.stdout + made.stderr
             assert made.stdout == ""
             (folder / "said.txt").write_text(made.stderr)

@@ -1,13 +1,12 @@
 """The workflow as a module of another one."""
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from helpers.project_copy import TINY
+from helpers.project_copy import TINY, run_python
 
 pytestmark = pytest.mark.workflow
 CALLER = """
@@ -46,13 +45,9 @@ def call(
         table=table,
     )
     (folder / "Snakefile").write_text(text)
-    return subprocess.run(
-        [sys.executable, "-m", "snakemake", "--cores", "2", *arguments],
-        cwd=folder,
-        env={**os.environ, "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"},
-        capture_output=True,
-        text=True,
-    )
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    command = ["-m", "snakemake", "--cores", "1", *arguments]
+    return run_python(folder, command, {**os.environ, "PATH": path})
 
 
 @pytest.mark.parametrize("prefix", ["", "surveys"])

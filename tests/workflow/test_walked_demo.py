@@ -3,17 +3,24 @@
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
 
 from helpers.pages import needs_browser
+from helpers.warm_python import serve_python
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 import walk_bench
 
 pytestmark = [pytest.mark.workflow, needs_browser]
-COMMAND = "import sys; from scanplan.project.run import command; sys.exit(command.main())"
+COMMAND = """
+import sys
+sys.executable = sys.argv.pop()
+from scanplan.project.run import command
+sys.exit(command.main())
+"""
 
 
 @pytest.fixture(scope="module")
@@ -21,11 +28,13 @@ def walked(project_root, tmp_path_factory):
     """The demo with its drawings alone, and what somebody did who answers what is drawn wrong."""
     folder = tmp_path_factory.mktemp("walk")
     (folder / "few.yaml").write_text("plan:\n  export:\n    formats: []\n")
-    planned = subprocess.run(
-        [sys.executable, "-c", COMMAND, "demo", "--cores", "2", "--configfile", "few.yaml"],
-        cwd=folder, env={**os.environ, "PYTHONPATH": str(project_root / "scripts")},
-        capture_output=True, text=True,
-    )  # fmt: skip
+    given = ("demo", "--cores", "1", "--configfile", "few.yaml")
+    with tempfile.TemporaryDirectory() as place, serve_python(place) as python:
+        planned = subprocess.run(
+            [sys.executable, "-c", COMMAND, *given, python],
+            cwd=folder, env={**os.environ, "PYTHONPATH": str(project_root / "scripts")},
+            capture_output=True, text=True,
+        )  # fmt: skip
     assert planned.returncode == 0, planned.stderr
     # what is missing is not drawn: a line takes as long as three answers
     return walk_bench.walk_floor(folder / "results/demo", minutes=0)

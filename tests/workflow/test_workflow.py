@@ -23,7 +23,7 @@ pytestmark = pytest.mark.workflow
 def project(planned, tmp_path_factory):
     project = Project(planned, tmp_path_factory.mktemp("work space"), made=True)
     project.plan_alone = project.digests()
-    compared = project.run("comparison")
+    compared = project.run("comparison", cores=2)
     assert compared.returncode == 0, compared.stdout + compared.stderr
     project.said = {"plan": (planned / "said.txt").read_text(), "comparison": compared.stderr}
     assert compared.stdout == ""
@@ -238,8 +238,7 @@ def test_one_core_gives_the_same_bytes(project):
     before = project.digests()
     # stages after these work with one core whatever there is
     wanted = [f"results/demo/{table}.parquet" for table in ("hulls", "plan/walls")]
-    forced = ("--forcerun", "build_hulls", "extract_chosen_walls")
-    result = project.run(*wanted, "--cores", "1", *forced)
+    result = project.run(*wanted, "--forcerun", "build_hulls", "extract_chosen_walls", cores=1)
     assert result.returncode == 0 and project.digests() == before
 
 
@@ -251,7 +250,7 @@ def started(project, log, *arguments):
     """Start a run, and return it once the stage with this log is at work."""
     with (project.folder / "said.txt").open("w") as said:
         run = subprocess.Popen(
-            project.command(*arguments),
+            project.command(*arguments, cores=2),
             cwd=project.folder,
             env=project.env(),
             stdout=subprocess.DEVNULL,
