@@ -70,7 +70,7 @@ def station_poses():
     return np.array(poses)
 
 
-def station_points(step_deg=0.5):
+def station_points(step_deg=1.0):
     """Return what each station sees, (n, 3) in its frame, NaN where nothing returns."""
     elevation = np.arange(-60, 85, step_deg)
     beams = directions(round(360 / step_deg), elevation)
