@@ -35,13 +35,14 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
       likely wrong than right;
     - what crosses a facade or lies behind it, bounds no room and is turned away from it: what is
       seen through windows;
+    - what stands by itself, away from all rooms, and is joined to nothing that does not;
     - what lies in a thicker wall, or beside it by what faces err by: its one side once more.
 
     Rooms have the ground of what is left out, as far as they go around it.
     """
     floor = overlays.unite_areas(plan.areas)
     is_left_out = (_find_pieces(plan) | _find_outside(plan)) & ~_find_bounding(plan, floor)
-    is_left_out |= _find_within(plan) | _find_nibs(plan, floor)
+    is_left_out |= _find_within(plan) | _find_nibs(plan, floor) | _find_islands(plan, floor)
     is_left_out &= ~plan.thick & (np.asarray(plan.walls["corrected"], str) == "")
     is_stated = np.asarray(plan.openings["corrected"], str) != ""
     is_left_out[plan.hosts[is_stated & (plan.hosts >= 0)]] = False
@@ -117,6 +118,20 @@ def _find_pieces(plan: FloorPlan) -> BoolArray:
     is_piece[plan.hosts[(plan.hosts >= 0) & ~find_nowhere(plan)]] = False
     unlikely = np.asarray(plan.walls.get("p_true", np.ones(len(lines_m))), float) < 1 / 2
     return (is_piece | unlikely) & ~moved_walls.find_met(gather_lines(plan, 0.0)).all(axis=1)
+
+
+def _find_islands(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
+    """Return which walls (n,) are farther from rooms than walls are deep, and join none nearer.
+
+    None without rooms.
+    """
+    is_tied = np.asarray(shapely.distance(plan.bodies, floor) <= _PIECE_M)
+    if not is_tied.any():
+        return np.zeros(len(is_tied), bool)
+    joined = moved_walls.find_joined(gather_lines(plan, 0.0))
+    while (grown := is_tied | (joined & is_tied).any(axis=1)).sum() > is_tied.sum():
+        is_tied = grown
+    return ~is_tied
 
 
 def _find_nibs(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
