@@ -4,16 +4,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import shapely
 
 from scanplan.exports.data.element_ids import JOINED
 from scanplan.geometry.lines import left_normals, line_lengths_m
-from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns, line_shapes
 from scanplan.plan.tolerances import END_M
 from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
 _IN_LINE_M = 0.001  # pieces in one line by the adjustment are off it by rounding alone
 _ALIKE_M = 0.0005  # of thickness and height: likewise
-_PARALLEL = 0.9998  # cosine of one degree
 _SQUARE = 0.17  # sine of ten degrees: what turns less does not cross
 _OF_PIECES: Mapping[str, Callable[[Array], object]] = {
     "z_min_m": np.fmin.reduce,
@@ -80,60 +80,80 @@ def _join_lines(plan: FloorPlan) -> tuple[FloatArray, IntArray]:
     lines_m = centrelines_m(plan.walls)
     piece_m = line_lengths_m(lines_m)
     kept = np.arange(len(lines_m))
-    is_alike = _find_alike(plan)
     half_m = np.maximum(*plan.sides_m)
-    while (pair := _find_next(lines_m, half_m, is_alike)) is not None:
-        one, other = sorted(pair, key=lambda row: (-piece_m[row], row))
+    for pair, place_m in _list_joints(plan):
+        one, other = sorted(kept[list(pair)].tolist(), key=lambda row: (-piece_m[row], row))
+        if one == other or _is_parted(place_m, one, lines_m, half_m):
+            continue
         along = (lines_m[one, 1] - lines_m[one, 0]) / line_lengths_m(lines_m[one : one + 1])
         at_m = (lines_m[[one, other]].reshape(-1, 2) - lines_m[one, 0]) @ along
-        lines_m[one] = lines_m[one, 0] + np.array([[at_m.min()], [at_m.max()]]) * along
-        # a part of the other: it runs through nothing else
-        lines_m[other] = lines_m[one]
         kept[kept == other] = one
-        is_alike[other] = is_alike[:, other] = False
+        # of its other pieces, too: they run through nothing else
+        lines_m[kept == one] = lines_m[one, 0] + np.array([[at_m.min()], [at_m.max()]]) * along
     return lines_m, kept
 
 
-def _find_alike(plan: FloorPlan) -> BoolArray:
-    """Return which straight walls (n, n) differ in nothing but where they are."""
+def _list_joints(plan: FloorPlan) -> list[tuple[tuple[int, int], FloatArray | None]]:
+    """Return walls in line that touch and differ in nothing else, and where, (2,).
+
+    Those that are longest together first; None of those that lie one beside the other.
+    """
+    lines_m = centrelines_m(plan.walls)
+    lengths_m = line_lengths_m(lines_m)
+    shapes = line_shapes(lines_m)
+    pairs = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=END_M).T
+    pairs = pairs[pairs[:, 0] < pairs[:, 1]]
+    pairs = pairs[_are_alike(plan, pairs)]
+    one_m, other_m = lines_m[pairs[:, 0]], lines_m[pairs[:, 1]]
+    gap_m, off_m = _place_beside(one_m, other_m)
+    back_m, back_off_m = _place_beside(other_m, one_m)
+    is_next = (np.maximum(gap_m, back_m) <= END_M) & (np.maximum(off_m, back_off_m) <= _IN_LINE_M)
+    order = np.argsort(-lengths_m[pairs].sum(axis=1), kind="stable")
+    joints: list[tuple[tuple[int, int], FloatArray | None]] = []
+    for row in order[is_next[order]].tolist():
+        ends_m = (one_m[row][:, None] - other_m[row]).reshape(4, 2)
+        nearest = int(np.argmin(np.hypot(*ends_m.T)))
+        place_m = (one_m[row, nearest // 2] + other_m[row, nearest % 2]) / 2
+        one, other = pairs[row].tolist()
+        joints.append(((one, other), None if gap_m[row] < -END_M else place_m))
+    return joints
+
+
+def _are_alike(plan: FloorPlan, pairs: IntArray) -> BoolArray:
+    """Return which pairs (p, 2) of walls are straight and differ in nothing but where they are."""
     walls = plan.walls
-    is_alike = ~plan.wall_shapes.is_bent & ~plan.wall_shapes.is_bent[:, None]
+    one, other = pairs.T
+    is_alike = ~plan.wall_shapes.is_bent[pairs].any(axis=1)
     for values in (walls["thickness_m"], plan.heights_m):
-        is_alike &= np.abs(values - values[:, None]) < _ALIKE_M
+        is_alike &= np.abs(values[one] - values[other]) < _ALIKE_M
     for name in ("thickness_from", "state", "perhaps"):
-        is_alike &= walls[name] == walls[name][:, None]
-    np.fill_diagonal(is_alike, val=False)
-    return is_alike
+        is_alike &= walls[name][one] == walls[name][other]
+    return np.asarray(is_alike, bool)
 
 
-def _find_next(
-    lines_m: FloatArray, half_m: FloatArray, is_alike: BoolArray
-) -> tuple[int, int] | None:
-    """Return two walls to be joined, those that are longest together first; None of none."""
+def _place_beside(lines_m: FloatArray, others_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return how far others (p, 2, 2) begin beyond lines, and how far off these they lie, (p,)."""
     ways_m = lines_m[:, 1] - lines_m[:, 0]
     lengths_m = np.hypot(*ways_m.T)
-    directions = ways_m / lengths_m[:, None]
+    to_m = others_m - lines_m[:, :1]
+    along_m = np.einsum("pek,pk->pe", to_m, ways_m / lengths_m[:, None])
+    off_m = np.abs(np.einsum("pek,pk->pe", to_m, left_normals(lines_m))).max(axis=1)
+    return np.maximum(along_m.min(axis=1) - lengths_m, -along_m.max(axis=1)), off_m
+
+
+def _is_parted(
+    place_m: FloatArray | None, one: int, lines_m: FloatArray, half_m: FloatArray
+) -> bool:
+    """Return whether a wall runs through another at a place, on beyond both its sides."""
+    if place_m is None:
+        return False
+    normal = left_normals(lines_m[one : one + 1])[0]
     normals = left_normals(lines_m)
-    to_m = lines_m - lines_m[:, None, None, 0]
-    off_m = np.abs(np.einsum("ijek,ik->ije", to_m, normals)).max(axis=2)
-    along_m = np.einsum("ijek,ik->ije", to_m, directions)
-    gap_m = np.maximum(along_m.min(axis=2) - lengths_m[:, None], -along_m.max(axis=2))
-    is_next = is_alike & (np.abs(directions @ directions.T) >= _PARALLEL)
-    is_next &= (np.maximum(off_m, off_m.T) <= _IN_LINE_M) & (gap_m <= END_M)
-    pairs = np.argwhere(np.triu(is_next))
-    for row in np.argsort(-lengths_m[pairs].sum(axis=1), kind="stable").tolist():
-        one, other = pairs[row].tolist()
-        if gap_m[one, other] < -END_M:  # one beside the other
-            return one, other
-        ends_m = (lines_m[one][:, None] - lines_m[other]).reshape(4, 2)
-        nearest = int(np.argmin(np.hypot(*ends_m.T)))
-        place_m = (lines_m[one, nearest // 2] + lines_m[other, nearest % 2]) / 2
-        offset_m = np.abs(np.einsum("ij,ij->i", place_m - lines_m[:, 0], normals))
-        # a wall that goes on beyond both sides
-        across_m = (lines_m - place_m) @ normals[one]
-        is_through = across_m.min(axis=1) < -half_m[one] - END_M
-        is_through &= across_m.max(axis=1) > half_m[one] + END_M
-        is_through &= np.abs(directions @ normals[one]) >= _SQUARE
-        if not (is_through & (offset_m <= half_m + END_M)).any():
-            return one, other
-    return None
+    offset_m = np.abs(np.einsum("ij,ij->i", place_m - lines_m[:, 0], normals))
+    across_m = (lines_m - place_m) @ normal
+    is_through = across_m.min(axis=1) < -half_m[one] - END_M
+    is_through &= across_m.max(axis=1) > half_m[one] + END_M
+    # what turns less goes on beside it
+    along = np.array([normal[1], -normal[0]])
+    is_through &= np.abs(normals @ along) >= _SQUARE
+    return bool((is_through & (offset_m <= half_m + END_M)).any())
