@@ -54,7 +54,7 @@ quick: environment style ## lint and the tests of what changed since main, under
 	    test -z "$$changed" || $(BIN)/basedpyright --project . $$changed
 	@$(PYTEST) -m "not workflow and not recordings" $$($(BIN)/python tests/changed_tests.py tests) $(ARGS)
 
-test: environment style ## lint and all tests but Slurm's, about 25 minutes
+test: environment style ## lint and all tests but Slurm's, about 11 minutes
 	@$(MAKE) --no-print-directory --jobs $(CORES) types tests
 
 tests:
