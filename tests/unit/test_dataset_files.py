@@ -123,7 +123,10 @@ def test_clouds_with_poses(tmp_path, clouds, read):
     assert dataset_files.is_scan_folder(files)
 
 
-@pytest.mark.parametrize("clouds", [["1700000000000000000.ply"], ["a.ply", "b.ply"]])
+@pytest.mark.parametrize(
+    "clouds",
+    [["1700000000000000000.ply"], ["a.ply", "b.ply"], ["20240101.1.las", "20240101.2.las"]],
+)
 def test_clouds_without_poses_are_merged_ones(tmp_path, clouds):
     for name in clouds:
         put(tmp_path / name)

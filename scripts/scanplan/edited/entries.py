@@ -95,31 +95,46 @@ def take_changes(plan: EditedPlan, changes: Sequence[Change], said: Said) -> Tak
 def _part_joined(plan: EditedPlan, change: Change) -> Iterator[Change]:
     """Yield what became of each piece of a wall that a regular drawing has as one.
 
-    Pieces go across with it, at its ends along it, too.
+    Pieces go across with it. Along it those at its ends do, and what is beyond them is gone.
     """
-    before = change.before
+    before, after = change.before, change.after
     if before is None or not before.joined:
         yield change
         return
-    pieces = [_move_piece(plan, change, key) for key in (before.key, *before.joined)]
-    yield from (piece for piece in pieces if list_changed(piece))
+    pieces = [replace(before, key=key, joined=()) for key in (before.key, *before.joined)]
+    rows = [plan.find_row(piece) for piece in pieces]
+    found = [row for row in rows if row is not None]
+    if after is None or after.line_m is None or len(found) < len(rows):
+        for piece in pieces:
+            yield Change(piece, None if after is None else replace(after, key=piece.key))
+        return
+    own_m = np.array([added.ends_of(row) for row in found])
+    moved_m = move_pieces(before, after.line_m, own_m)
+    for piece, line_m, there_m in zip(pieces, own_m, moved_m, strict=True):
+        there = None if there_m is None else replace(after, key=piece.key, line_m=there_m)
+        moved = Change(replace(piece, line_m=line_m), there)
+        if list_changed(moved):
+            yield moved
 
 
-def _move_piece(plan: EditedPlan, change: Change, key: str) -> Change:
-    before, after = change.before, change.after
-    assert before is not None and before.line_m is not None
-    piece = replace(before, key=key, joined=())
-    row = plan.find_row(piece)
-    if row is None or after is None or after.line_m is None:
-        return Change(piece, None if after is None else replace(after, key=key))
-    own_m = added.ends_of(row)
-    shares = np.clip((own_m - before.line_m[0]) @ before.along / before.length_m, 0.0, 1.0)
-    by_m = align(after.line_m, before.line_m) - before.line_m
-    moved_m = by_m[0] + shares[:, None] * (by_m[1] - by_m[0])
-    is_end = np.minimum(shares, 1 - shares) * before.length_m <= END_M
-    along_m = np.where(is_end, 0.0, moved_m @ before.along)
-    line_m = own_m + moved_m - along_m[:, None] * before.along
-    return Change(replace(piece, line_m=own_m), replace(after, key=key, line_m=line_m))
+def move_pieces(before: Element, after_m: FloatArray, own_m: FloatArray) -> list[FloatArray | None]:
+    """Return where pieces (k, 2, 2) of a wall are if its line is elsewhere; None of what is gone.
+
+    What the wall's ends have moved by along it the outermost ends of pieces do; shortened, it keeps
+    what lies between its ends.
+    """
+    assert before.line_m is not None
+    by_m = align(after_m, before.line_m) - before.line_m
+    at_m = (own_m - before.line_m[0]) @ before.along
+    shares = np.clip(at_m / before.length_m, 0.0, 1.0)
+    moved_m = by_m[0] + shares[..., None] * (by_m[1] - by_m[0])
+    across_m = moved_m - (moved_m @ before.along)[..., None] * before.along
+    low_m, high_m = np.array([at_m.min(), at_m.max()]) + by_m @ before.along
+    there_m = np.clip(at_m, low_m, high_m)
+    there_m = np.where(at_m == at_m.min(), low_m, np.where(at_m == at_m.max(), high_m, there_m))
+    is_left = np.diff(there_m)[:, 0] * np.sign(np.diff(at_m)[:, 0]) >= END_M
+    lines_m = own_m + across_m + (there_m - at_m)[..., None] * before.along
+    return [line_m if is_kept else None for line_m, is_kept in zip(lines_m, is_left, strict=True)]
 
 
 class _NotSaidError(Exception):

@@ -135,7 +135,7 @@ def list_clouds(folder: Path) -> list[Path]:
     """
     files = [entry for entry in visible(folder) if not entry.is_dir()]
     clouds = [file for file in files if is_merged(file)]
-    stamped = [file for file in clouds if is_stamp(file.stem)]
+    stamped = [file for file in _list_by_suffix(folder, _CLOUD_SUFFIXES) if is_stamp(file.stem)]
     _check_unposed(stamped if len(stamped) > 1 else [], folder / POSES_FILE)
     timed = [file for file in clouds if file.suffix.lower() in _LAS_SUFFIXES]
     trajectories = [file for file in files if is_trajectory(file)]

@@ -132,7 +132,7 @@ def _room_item(plan: FloorPlan, ids: ElementIds, row: int, walls: list[str]) -> 
         "name": plan.room_names[row],
         "walls": walls,
         "floorTexture": "light-oak",
-        "area": round(float(plan.rooms["area_m2"][row]), 2),
+        "area": round(float(plan.net_areas_m2[row]), 2),
     }
     return item | ({"details": {"roomType": use}} if use else {})
 

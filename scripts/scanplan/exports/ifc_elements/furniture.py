@@ -33,7 +33,8 @@ def _add_piece(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     number = str(columns["furniture"][row])
     place = outline.centroid
     named = str(columns["named"][row])
-    noun = model.origin.locale.say(named or "furniture").capitalize()
+    said = model.origin.locale.say(named or "furniture")
+    noun = said[:1].upper() + said[1:]
     ifc_class, predefined = _CLASSES.get(named, ("IfcFurniture", "NOTDEFINED"))
     piece = model.root(
         ifc_class,
