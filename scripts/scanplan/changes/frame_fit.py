@@ -146,6 +146,7 @@ def _conclude(a: SeenFaces, b: SeenFaces, motion: PlaneMotion, centre_m: FloatAr
     # nor does furniture, which is carried
     p_walls = a.p_wall[pairs.a] * b.p_wall[pairs.b]
     by_wall = weight * np.tile(p_walls / n_faces, 2)
+    by_wall = by_wall if by_wall.any() else weight
     scales_m = _scale_m(off_m, weight, _HALF), _scale_m(off_m, by_wall, _MOST)
     scale_m = max(*scales_m, _LEAST_SCATTER_M)
     beyond_m2 = scale_m**2 - float(np.median(stated_m2))

@@ -243,7 +243,8 @@ class FloorPlan:
         """
         bodies = self.wall_shapes.draw_footprints()
         sure = ~np.asarray(self.walls.get("perhaps", np.zeros(len(bodies))), bool)
-        bodies[sure] = self.wall_shapes.take(sure).draw_footprints()
+        if not sure.all():
+            bodies[sure] = self.wall_shapes.take(sure).draw_footprints()
         return bodies
 
     @cached_property
