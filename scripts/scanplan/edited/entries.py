@@ -102,15 +102,17 @@ def _part_joined(plan: EditedPlan, change: Change) -> Iterator[Change]:
         yield change
         return
     pieces = [replace(before, key=key, joined=()) for key in (before.key, *before.joined)]
-    rows = [plan.find_row(piece) for piece in pieces]
-    found = [row for row in rows if row is not None]
-    if after is None or after.line_m is None or len(found) < len(rows):
+    rows = {piece.key: plan.find_row(piece) for piece in pieces}
+    own_m = np.array([added.ends_of(row) for row in rows.values() if row is not None])
+    if after is None or after.line_m is None or not len(own_m):
         for piece in pieces:
             yield Change(piece, None if after is None else replace(after, key=piece.key))
         return
-    own_m = np.array([added.ends_of(row) for row in found])
     moved_m = move_pieces(before, after.line_m, own_m)
-    for piece, line_m, there_m in zip(pieces, own_m, moved_m, strict=True):
+    # what is not in the plan any more is told as such
+    yield from (Change(piece, after) for piece in pieces if rows[piece.key] is None)
+    found = [piece for piece in pieces if rows[piece.key] is not None]
+    for piece, line_m, there_m in zip(found, own_m, moved_m, strict=True):
         there = None if there_m is None else replace(after, key=piece.key, line_m=there_m)
         moved = Change(replace(piece, line_m=line_m), there)
         if list_changed(moved):

@@ -10,6 +10,7 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.geometry import overlays
+from scanplan.geometry.tolerances import DIGITS
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import Columns
 
@@ -23,7 +24,6 @@ CRS = (
     'AXIS["x",unspecified],AXIS["y",unspecified],LENGTHUNIT["metre",1]]'
 )
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
-_DIGITS = 4  # of lengths: 0.1 mm
 _NORMAL_DIGITS = 6  # of unit normals: 0.1 mm at the end of a wall of 100 m
 _NORMALS = ("nx", "ny")
 _LEFT_OUT = {*_ENDS, "geometry", "x_m", "y_m"}
@@ -129,7 +129,7 @@ def make_feature(identity: str, shape: BaseGeometry, properties: Mapping[str, An
 def _format_shape(shape: BaseGeometry) -> dict[str, Any]:
     """Return a shape to a tenth of a millimetre, an area that then crosses itself parted."""
     # the right-hand rule of RFC 7946: outlines counter-clockwise
-    rounded = shapely.orient_polygons(overlays.round_shape(shape, _DIGITS))
+    rounded = shapely.orient_polygons(overlays.round_shape(shape, DIGITS))
     return json.loads(shapely.to_geojson(rounded))
 
 
@@ -151,7 +151,7 @@ def _feature(
     kind: str, columns: Columns, row: int, geometry: dict[str, Any], derived: dict[str, Any]
 ) -> Feature:
     properties = {
-        name: round_value(values[row], _NORMAL_DIGITS if name in _NORMALS else _DIGITS)
+        name: round_value(values[row], _NORMAL_DIGITS if name in _NORMALS else DIGITS)
         for name, values in columns.items()
         if name not in _LEFT_OUT
     }
@@ -171,7 +171,7 @@ def _add_scans(walls: list[Feature], evidence: Columns) -> None:
         feature["properties"]["t_ns"] = evidence["t_ns"][is_of_wall].tolist()
 
 
-def round_value(value: Any, digits: int = _DIGITS) -> Any:
+def round_value(value: Any, digits: int = DIGITS) -> Any:
     """Return a table's value as JSON has it: null for NaN, floats rounded."""
     plain = value.item() if isinstance(value, np.generic) else value
     if not isinstance(plain, float):
@@ -179,6 +179,6 @@ def round_value(value: Any, digits: int = _DIGITS) -> Any:
     return None if np.isnan(plain) else _round(plain, digits)
 
 
-def _round(value: float, digits: int = _DIGITS) -> float:
+def _round(value: float, digits: int = DIGITS) -> float:
     # + 0.0 turns a negative zero into zero
     return round(float(value), digits) + 0.0

@@ -6,6 +6,9 @@ ROUNDING = 1e-9
 SAME_M = 1e-6
 """Coordinates nearer than a micrometre are the same: no sensor resolves them."""
 
+DIGITS = 4
+"""Decimals of metres that files of drawings have: a tenth of a millimetre."""
+
 SHORTEST_M = 1e-3
 """Shorter lengths are rounding of coordinates that are given to the millimetre."""
 

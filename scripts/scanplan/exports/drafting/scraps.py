@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from scipy.sparse.csgraph import connected_components
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting import moved_rooms, moved_walls
@@ -129,9 +130,8 @@ def _find_islands(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
     if not is_tied.any():
         return np.zeros(len(is_tied), bool)
     joined = moved_walls.find_joined(gather_lines(plan, 0.0))
-    while (grown := is_tied | (joined & is_tied).any(axis=1)).sum() > is_tied.sum():
-        is_tied = grown
-    return ~is_tied
+    _, group = connected_components(joined, directed=False)
+    return ~np.isin(group, group[is_tied])
 
 
 def _find_nibs(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:

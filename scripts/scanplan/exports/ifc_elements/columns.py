@@ -25,7 +25,7 @@ def _add_column(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instanc
     column = model.root(
         "IfcColumn",
         (round(place.x, 2), round(place.y, 2)),
-        Name=f"{model.origin.locale.say('column').capitalize()} {number}",
+        Name=f"{model.origin.locale.title('column')} {number}",
         Tag=number,
         ObjectPlacement=frame.placement(model),
         PredefinedType="COLUMN",

@@ -33,13 +33,11 @@ def _add_piece(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
     number = str(columns["furniture"][row])
     place = outline.centroid
     named = str(columns["named"][row])
-    said = model.origin.locale.say(named or "furniture")
-    noun = said[:1].upper() + said[1:]
     ifc_class, predefined = _CLASSES.get(named, ("IfcFurniture", "NOTDEFINED"))
     piece = model.root(
         ifc_class,
         (round(place.x, 2), round(place.y, 2)),
-        Name=f"{noun} {number}",
+        Name=f"{model.origin.locale.title(named or 'furniture')} {number}",
         Tag=number,
         ObjectPlacement=model.placement((0, 0, 0), (1, 0), model.storey.ObjectPlacement),
         PredefinedType=predefined,

@@ -141,7 +141,7 @@ def _name_opening(locale: Locale, storey: StoreyPlan, row: int) -> str:
     joined = storey.name_joined_rooms(row)
     if len(joined) == 1 and kind in WAYS and storey.leads_outside(row):
         joined = [*joined, locale.say("outside")]
-    noun = locale.say(kind).capitalize()
+    noun = locale.title(kind)
     words = [f"{noun} {columns['opening'][row]}", locale.measure(width_m)]
     return ", ".join([*words, *filter(None, [f" {locale.say('to')} ".join(joined)])])
 
@@ -254,7 +254,7 @@ def _give_types(model: IfcModel, storey: StoreyPlan, openings: list[Opening]) ->
     for (kind, width_m, operation, listed), fillings in sorted(fillings_of.items()):
         of_doors = kind == "door"
         locale = model.origin.locale
-        name = listed or f"{locale.say(kind).capitalize()} {locale.size(width_m)}"
+        name = listed or f"{locale.title(kind)} {locale.size(width_m)}"
         if operation != "NOTDEFINED":
             words = operation.lower().replace("_", " ").replace("userdefined", "sliding")
             name += f", {locale.say(words)}"

@@ -69,7 +69,7 @@ def _name_wall(locale: Locale, storey: StoreyPlan, row: int) -> str:
     thickness_m = float(plan.walls["thickness_m"][row])
     radius_m = float(plan.walls["arc_radius_m"][row])
     words = [
-        f"{locale.say('wall').capitalize()} {plan.walls['wall'][row]}",
+        f"{locale.title('wall')} {plan.walls['wall'][row]}",
         "exterior" if storey.external[row] else "interior",
         locale.size(thickness_m) if storey.is_thickness_measured[row] else "thickness assumed",
         f"radius {locale.measure(radius_m)}" if plan.wall_shapes.is_bent[row] else "",
@@ -182,9 +182,9 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
     for (is_thick, thickness_m, listed), rows in sorted(rows_of.items()):
         locale = model.origin.locale
         assumed = "" if is_thick else f", {locale.say('thickness assumed')}"
-        own = f"{locale.say('wall').capitalize()} {locale.size(thickness_m)}"
+        own = f"{locale.title('wall')} {locale.size(thickness_m)}"
         name = (listed or own) + assumed
-        not_known = locale.say("not known").capitalize() + assumed
+        not_known = locale.title("not known") + assumed
         material = model.new("IfcMaterial", not_known, None, "not known")
         layer = model.new("IfcMaterialLayer", material, thickness_m)
         layers = model.new("IfcMaterialLayerSet", [layer], name)

@@ -97,8 +97,9 @@ def dimension_facades(
     chains = [*_list_chains(page, ground, openings_m)]
     # words keep off the lines of all of them
     for chain in chains:
-        for ends, line in chain.list_lines():
-            space.add_lines([path for of in trace_dimension(ends, line) for path in of])
+        for span in chain.list_spans():
+            traced = trace_dimension(*chain.draw_span(*span))
+            space.add_lines([path for of in traced for path in of])
     for chain in chains:
         yield from _draw_chain(page, chain, space)
 
@@ -305,11 +306,6 @@ class _Chain:
         """Return what a span measures (2, 2), and its line (2, 2), on paper."""
         line = np.array([[start.x, self.level], [end.x, self.level]])
         return np.array([start[:2], end[:2]]) @ self.turn, line @ self.turn
-
-    def list_lines(self) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """Yield what its dimensions measure, and their lines, likewise."""
-        for span in self.list_spans():
-            yield self.draw_span(*span)
 
 
 def _draw_chain(page: Page, chain: _Chain, space: LabelSpace) -> Iterator[Dimension]:

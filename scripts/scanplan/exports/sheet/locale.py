@@ -145,6 +145,15 @@ class Locale:
                 return separator.join(said)
         return self._write(text)
 
+    def title(self, text: str) -> str:
+        """Return an English text in the language, with a capital at its beginning.
+
+        >>> Locale(phrases={"toilet": "WC"}).title("toilet"), Locale().title("not known")
+        ('WC', 'Not known')
+        """
+        said = self.say(text)
+        return said[:1].upper() + said[1:]
+
     @cached_property
     def _patterns(self) -> list[tuple[re.Pattern[str], str]]:
         """Phrases as patterns: those with most letters first, as they say most."""

@@ -14,14 +14,13 @@ from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import bitmap, overlays
 from scanplan.geometry.polygons import largest_first
+from scanplan.geometry.tolerances import DIGITS
 from scanplan.plan.tolerances import CORNER_M, ENOUGH_RAYS, FACE_M, LEAST_SCANS, LOW_PERCENT
 from scanplan.rays.face_raster import CELL_M
 from scanplan.rays.ray_set import RaySet
 from scanplan.rays.tolerances import SKIRTING_M
 from scanplan.store.schemas import PIECE
 from scanplan.types import BoolArray, FloatArray, IntArray
-
-_DIGITS = 4  # of outlines: a tenth of a millimetre, what files are rounded to
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +219,7 @@ def _draw_outline(cells: IntArray, grid: bitmap.Grid) -> Polygon:
         overlays.buffer_shapes(grown, -grid.cell_m / 2, join_style="mitre"), grid.cell_m
     )
     # what touches itself but for rounding would cross itself in files
-    rounded = overlays.round_shape(drawn, _DIGITS)
+    rounded = overlays.round_shape(drawn, DIGITS)
     return max(shapely.get_parts(rounded), key=lambda part: part.area)
 
 
