@@ -263,6 +263,40 @@ def test_an_opening_is_in_its_wall_and_of_a_size_of_the_catalogue():
     assert other.openings["width_m"] == pytest.approx([0.9, 1.3])
 
 
+def test_faces_and_rooms_lie_on_sides_of_walls():
+    # 6 mm before and behind the sides; corners cut off, a step where nothing is
+    faces = [(0, 0.006, 7.1, 0.006, 0), (4.006, 0, 4.006, 3, 5), (4.1, 0, 4.1, 3, 5)]
+    west = [(0.02, 0), (2, 0), (2.01, 0.008), (3.98, 0.007), (4, 0.03), (4, 3), (0, 3), (0, 0.02)]
+    east = [(4.106, 0), (7.1, 0), (7.1, 3), (4.106, 3)]
+    drawn = floorplan_making.plan(
+        faces=floorplan_making.faces(faces),
+        rooms=floorplan_making.rooms([shapely.Polygon(west), shapely.Polygon(east)]),
+    )
+    regular, _ = draft_plan(drawn, SETTINGS)
+    sides_m = centrelines_m(regular.faces)
+    assert [*sides_m[0, :, 1], *sides_m[1:, 0, 0]] == pytest.approx([0, 0, 4, 4.1], abs=1e-9)
+    assert regular.areas[0].normalize().equals_exact(floorplan_making.ROOMS[0].normalize(), 1e-9)
+    assert regular.areas[1].normalize().equals_exact(floorplan_making.ROOMS[1].normalize(), 1e-9)
+
+
+def test_a_face_before_its_wall_stays_as_far_from_it():
+    faces = floorplan_making.faces([(0, 0.05, 7.1, 0.05, 0)])
+    regular, _ = draft_plan(floorplan_making.plan(faces=faces), SETTINGS)
+    assert centrelines_m(regular.faces)[0, :, 1] == pytest.approx([0.05, 0.05])
+
+
+def test_an_opening_beside_a_joint_of_a_wall_is_of_a_size_of_the_catalogue():
+    # its pieces meet at 4.05
+    walls = [(*row[:4], "observed") for row in floorplan_making.WALLS]
+    window = ((4.06, 3.1, 5.25, 3.1), 2, "window", 0.9, 2.1, 1, -1)
+    drawn = floorplan_making.plan(
+        walls=floorplan_making.walls(walls), openings=floorplan_making.openings([window])
+    )
+    regular, _ = draft_plan(drawn, SETTINGS)
+    assert regular.openings["width_m"] == pytest.approx([1.2])
+    assert regular.walls["joined"][regular.hosts[0]] == "2"
+
+
 def test_short_pieces_of_wall_at_no_room_are_left_out_and_counted():
     stub = ((8.0, 1.0, 8.0, 1.4), np.nan, 0, -1, "observed")
     drawn = floorplan_making.plan(walls=floorplan_making.walls([*floorplan_making.WALLS, stub]))

@@ -6,17 +6,16 @@ import numpy as np
 import shapely
 from shapely.geometry import Polygon
 
-from scanplan.exports.drafting.moved_walls import MovedWalls
+from scanplan.exports.drafting.moved_walls import ON_M, MovedWalls
 from scanplan.geometry import overlays
 from scanplan.plan.tolerances import END_M
-from scanplan.types import FloatArray
+from scanplan.types import BoolArray, FloatArray, IntArray
 
-ON_M = 0.02
-"""What lies on a wall's side is off it by less: outlines are drawn along sides."""
 _ALONG_SINE = 0.05  # of 3 degrees: an edge that runs along a wall
 _CORNER_SINE = 0.17  # of 10 degrees: edges that turn less go on, and do not cross
 _STRAIGHT_M = 0.005
 """Off a straight line by less is noise of faces, and no more than a hair on paper."""
+_IN_LINE_M = 0.0005  # what lies on walls in one line is off it by rounding alone
 _LEAST_EDGE_M = 0.03  # a shorter one has no direction
 
 
@@ -26,20 +25,21 @@ def move_outline(outline: Polygon, moved: MovedWalls) -> Polygon:
     Every edge that lay along a side of a wall does so again; a corner is where its two edges cross,
     or on the one of them that lies on a wall. What lies on no wall stays.
     """
+    straight = _straighten(outline, _STRAIGHT_M)
     rings = [
-        _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(outline)
+        _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(straight)
     ]
     whole = [ring for ring in rings if len(ring) >= 3]
     shape = overlays.repair_areas(Polygon(whole[0], whole[1:])) if whole else outline
     parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
-    return _straighten(max(parts, key=lambda part: part.area, default=outline))
+    return _straighten(max(parts, key=lambda part: part.area, default=outline), _IN_LINE_M)
 
 
-def _straighten(outline: Polygon) -> Polygon:
+def _straighten(outline: Polygon, off_m: float) -> Polygon:
     """Return an outline without corners at which it does not turn, the first of each ring too."""
-    kept = overlays.simplify_shapes(outline, _STRAIGHT_M)
+    kept = overlays.simplify_shapes(outline, off_m)
     turned = [_turn_ring(shapely.get_coordinates(ring)) for ring in shapely.get_rings(kept)]
-    again = overlays.simplify_shapes(Polygon(turned[0], turned[1:]), _STRAIGHT_M)
+    again = overlays.simplify_shapes(Polygon(turned[0], turned[1:]), off_m)
     fewest = min(kept, again, key=shapely.get_num_coordinates)
     return fewest if isinstance(fewest, Polygon) and fewest.is_valid else outline
 
@@ -51,23 +51,35 @@ def _turn_ring(corners_m: FloatArray) -> FloatArray:
 
 def _move_ring(corners_m: FloatArray, moved: MovedWalls) -> list[FloatArray]:
     edges_m = np.array([*pairwise(corners_m)])
-    hosts = [_find_host(edge_m, moved) for edge_m in edges_m]
+    hosts = np.array([_find_host(edge_m, moved) for edge_m in edges_m])
+    is_kept = ~_find_between(hosts, np.hypot(*(edges_m[:, 1] - edges_m[:, 0]).T))
+    edges_m, hosts = edges_m[is_kept], hosts[is_kept]
     lines_m = [
         moved.move_points(edge_m, host) if host >= 0 else edge_m
-        for edge_m, host in zip(edges_m, hosts, strict=True)
+        for edge_m, host in zip(edges_m, hosts.tolist(), strict=True)
     ]
     points_m: list[FloatArray] = []
-    for row, corner_m in enumerate(edges_m[:, 0]):
-        before, after = row - 1, row
-        is_on = [hosts[before] >= 0, hosts[after] >= 0]
-        ends_m = [lines_m[before][1], lines_m[after][0]]
-        if all(is_on):
+    for after in range(len(edges_m)):
+        before = after - 1
+        is_on = hosts[[before, after]] >= 0
+        if is_on.all():
             points_m += _meet(lines_m[before], lines_m[after])
-        elif any(is_on):
-            points_m.append(ends_m[0] if is_on[0] else ends_m[1])
         else:
-            points_m.append(corner_m)
+            points_m.append(lines_m[before][1] if is_on[0] else lines_m[after][0])
     return points_m
+
+
+def _find_between(hosts: IntArray, lengths_m: FloatArray) -> BoolArray:
+    """Return which edges (n,) lie on no wall, but between two that do, and are too short to show.
+
+    All from the one to the other together: what is left of a corner, or of a joint of two walls.
+    """
+    is_between = np.zeros(len(hosts), bool)
+    on = np.flatnonzero(hosts >= 0)
+    for first, last in zip(on, np.roll(on, -1), strict=True):
+        run = np.arange(first + 1, last + len(hosts) * (last <= first)) % len(hosts)
+        is_between[run] = lengths_m[run].sum() <= END_M
+    return is_between
 
 
 def _find_host(edge_m: FloatArray, moved: MovedWalls) -> int:
@@ -84,7 +96,7 @@ def _find_host(edge_m: FloatArray, moved: MovedWalls) -> int:
     ahead_m = np.einsum("ij,ij->i", to_m, walls.directions)
     off_m = np.abs(np.abs(across_m) - walls.half_m)
     beyond_m = np.maximum(-ahead_m, ahead_m - walls.lengths_m)
-    is_on = (sines <= _ALONG_SINE) & (off_m <= ON_M) & (beyond_m <= END_M)
+    is_on = ~walls.is_bent & (sines <= _ALONG_SINE) & (off_m <= ON_M) & (beyond_m <= END_M)
     if not is_on.any():
         return -1
     # of collinear walls that which it is beside

@@ -12,6 +12,8 @@ from scanplan.plan.floorplan import line_shapes
 from scanplan.plan.tolerances import CORNER_M, END_M
 from scanplan.types import BoolArray, FloatArray
 
+ON_M = 0.02
+"""What lies on a wall's side is off it by less: outlines are drawn along sides."""
 _LEAST_SINE = 0.17  # walls that turn by less than 10 degrees run on, and have no crossing
 
 
@@ -32,23 +34,23 @@ class MovedWalls:
     lines_m: FloatArray
     grown_m: FloatArray
 
-    def find_offset_m(self, points_m: FloatArray, wall: int) -> FloatArray:
-        """Return how far points (..., 2) lay to the left of a wall's line, (...,)."""
-        return (points_m - self.before.lines_m[wall, 0]) @ _left_of(self.before.directions[wall])
-
     def move_points(self, points_m: FloatArray, wall: int) -> FloatArray:
-        """Return points (..., 2) beside or on a wall's line as far from where it is now.
+        """Return what lay along a side of a wall, points (n, 2), along that side as it is now.
 
-        What lay on a side of a wall that has become thicker stays on it.
+        What lay farther off stays as far off its line; along a curved wall nothing moves.
         """
+        before = self.before
+        if before.is_bent[wall]:
+            return points_m
         line_m = self.lines_m[wall]
+        off_m = float(
+            np.mean((points_m - before.lines_m[wall, 0]) @ _left_of(before.directions[wall]))
+        )
+        half_m = before.half_m[wall]
+        if abs(abs(off_m) - half_m) <= ON_M:
+            off_m = np.sign(off_m) * (half_m + self.grown_m[wall] / 2 * (half_m > 0))
         left = _left_of((line_m[1] - line_m[0]) / np.hypot(*(line_m[1] - line_m[0])))
-        half_m = self.before.half_m[wall]
-        offset_m = self.find_offset_m(points_m, wall)
-        side = np.sign(offset_m) * (np.abs(offset_m) > half_m / 2) * (half_m > 0)
-        wanted_m = offset_m + side * self.grown_m[wall] / 2
-        off_m = wanted_m - (points_m - line_m[0]) @ left
-        return points_m + off_m[..., None] * left
+        return points_m + (off_m - (points_m - line_m[0]) @ left)[:, None] * left
 
 
 def move_walls(walls: WallLines, wanted: Wanted, adjusted: Adjusted) -> MovedWalls:

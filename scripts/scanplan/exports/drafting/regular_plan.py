@@ -135,14 +135,6 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     off_m = np.nan_to_num(side * behind_m / 2)
     middles_m = moved.lines_m + (off_m[:, None] * left_normals(moved.lines_m))[:, None]
     drawn_m = moved_walls.join_ends(walls, middles_m, thickness_m)
-    openings = moved_openings.move_openings(
-        plan.openings,
-        np.where(np.append(walls.is_bent, False)[plan.hosts], -1, plan.hosts),
-        drawn_m,
-        {"door": settings.doors_m, "window": settings.windows_m},
-        settings.tolerance_m,
-    )
-    openings = {**openings, "thickness_m": np.append(thickness_m, np.nan)[plan.hosts]}
     turned_deg = np.degrees(_turn_between(walls.lines_m, moved.lines_m))
     changed = {
         **line_columns(drawn_m),
@@ -153,17 +145,22 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         "thickness_from": thickness_from,
         "perhaps": doubts.find_of_kind(plan.walls) & ~is_facade,
     }
-    in_pieces = settle_loose(
+    in_pieces = replace(
+        plan,
+        walls=_leave_doubts({**plan.walls, **changed}),
+        faces=_leave_doubts(_move_faces(plan, moved)),
+        rooms=_leave_doubts(_move_rooms(plan, moved)),
+    )
+    joined, row_of = join_walls(in_pieces)
+    regular = settle_loose(
         replace(
-            plan,
-            walls=_leave_doubts({**plan.walls, **changed}),
-            faces=_leave_doubts(_move_faces(plan, moved)),
-            openings={**_leave_doubts(openings), "corrected": openings["corrected"]},
-            rooms=_leave_doubts(_move_rooms(plan, moved)),
-            furniture=square_columns(plan.furniture, drawn_m, settings.tolerance_m),
+            joined,
+            openings=_move_openings(joined, settings),
+            furniture=square_columns(
+                plan.furniture, centrelines_m(joined.walls), settings.tolerance_m
+            ),
         )
     )
-    regular, row_of = join_walls(in_pieces)
     kinds = [
         {row_of[wall] for prior in adjusted.held if prior.kind == kind for wall in prior.walls}
         for kind in (DIRECTION, THROUGH, THICKNESS)
@@ -175,10 +172,12 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         moved_m=float(adjusted.moved_m.max(initial=0)),
         turned_deg=float(np.abs(turned_deg).max(initial=0)),
         thickness_m=float(np.abs(grown_m).max(initial=0)),
-        width_m=float(np.abs(openings["width_changed_m"]).max(initial=0)),
+        width_m=float(np.abs(regular.openings["width_changed_m"]).max(initial=0)),
         n_assumed=int((thickness_from == ASSUMED).sum()),
         n_revealed=int((thickness_from == REVEALS).sum()),
-        n_left_out=_count_elements(surveyed) - _count_elements(in_pieces) + n_cut,
+        n_left_out=n_cut
+        + (len(surveyed.walls["wall"]) - len(plan.walls["wall"]))
+        + (len(surveyed.openings["opening"]) - len(regular.openings["opening"])),
     )
     return regular, drafted
 
@@ -199,8 +198,21 @@ def _find_reveals(plan: FloorPlan, facades: IntArray, settings: DraftSettings) -
     return {int(walls[row]): float(thick_m[row]) for row in known}
 
 
-def _count_elements(plan: FloorPlan) -> int:
-    return len(plan.walls["wall"]) + len(plan.openings["opening"])
+def _move_openings(plan: FloorPlan, settings: DraftSettings) -> Columns:
+    """Return a plan's openings in its walls' lines: those of curved walls stay."""
+    openings = moved_openings.move_openings(
+        plan.openings,
+        np.where(np.append(plan.wall_shapes.is_bent, False)[plan.hosts], -1, plan.hosts),
+        centrelines_m(plan.walls),
+        {"door": settings.doors_m, "window": settings.windows_m},
+        settings.tolerance_m,
+    )
+    thickness_m = np.append(plan.walls["thickness_m"], np.nan)[plan.hosts]
+    return {
+        **_leave_doubts(openings),
+        "corrected": openings["corrected"],
+        "thickness_m": thickness_m,
+    }
 
 
 def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:

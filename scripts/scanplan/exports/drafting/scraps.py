@@ -7,7 +7,7 @@ import shapely
 from scipy.sparse.csgraph import connected_components
 from shapely.geometry.base import BaseGeometry
 
-from scanplan.exports.drafting import moved_rooms, moved_walls
+from scanplan.exports.drafting import moved_walls
 from scanplan.exports.drafting.facades import find_behind, find_facades
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
@@ -63,7 +63,7 @@ def leave_scraps(plan: FloorPlan) -> FloorPlan:
 def _fill_rooms(plan: FloorPlan, is_left_out: BoolArray) -> Columns:
     """Return rooms without the niches that are left of walls."""
     left_out = overlays.buffer_shapes(
-        plan.bodies[is_left_out], moved_rooms.ON_M, join_style="mitre"
+        plan.bodies[is_left_out], moved_walls.ON_M, join_style="mitre"
     )
     taken = overlays.unite_areas([*plan.bodies[~is_left_out], *plan.areas])
     bare = overlays.subtract_areas(overlays.unite_areas(left_out), taken)
@@ -106,7 +106,7 @@ def _find_bounding(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
     Less ways from a room into itself: these part nothing.
     """
     lines_m = centrelines_m(plan.walls)
-    near = overlays.buffer_shapes(floor.boundary, 2 * moved_rooms.ON_M)
+    near = overlays.buffer_shapes(floor.boundary, 2 * moved_walls.ON_M)
     along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
     bounding_m = shapely.length(along) - _sum_nowhere(plan)
     return bounding_m >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2

@@ -9,8 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.facades import find_behind, find_facades
-from scanplan.exports.drafting.moved_rooms import ON_M
-from scanplan.exports.drafting.moved_walls import find_joined
+from scanplan.exports.drafting.moved_walls import ON_M, find_joined
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.geometry import overlays
 from scanplan.geometry.lines import line_lengths_m
