@@ -17,7 +17,9 @@ from scanplan.exports.sheet.labels import Candidate, LabelSpace
 from scanplan.exports.sheet.marks import Word, flatten
 from scanplan.exports.sheet.openings import list_symbols
 from scanplan.exports.sheet.paper import Slot
+from scanplan.exports.sheet.shown import show_measured
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Letters, Paper, doubt_layer
+from scanplan.plan.floorplan import summarise_floorplan
 from scanplan.store import schemas
 from scanplan.store.doubts import Doubts, Finding
 from scanplan.validation.doubts import find_doubtful_faces, list_doubts
@@ -577,9 +579,12 @@ def test_a_passage_in_no_wall_is_drawn_as_what_is_inferred():
     in_wall = (*through[:1], 4, *through[2:])
     leads_out = (*through[:-1], -1)
     for opening, kind in ((through, "parting"), (in_wall, "passage"), (leads_out, "passage")):
-        sheet = composition.compose_sheet(plan(openings=floorplan_making.openings([opening])))
+        drawn = plan(openings=floorplan_making.openings([opening]))
+        sheet = composition.compose_sheet(drawn)
         (symbol,) = sheet.symbols
         assert (symbol.kind, symbol.element) == (kind, "passage-0")
+        for said in (show_measured(drawn).contents, summarise_floorplan(drawn)):
+            assert ("passage" in said) == (kind == "passage")
         assert any(mark.element == f"legend-{kind}" for mark in sheet.paper_marks)
 
 

@@ -266,6 +266,12 @@ class FloorPlan:
         return np.array(rows, np.int64)
 
     @cached_property
+    def partings(self) -> BoolArray:
+        """Which openings (m,) are passages between two rooms in no wall: nothing stands there."""
+        is_bare = np.asarray(self.openings["type"] == "passage", bool)
+        return is_bare & (self.hosts < 0) & (self.openings["room_b"] >= 0)
+
+    @cached_property
     def gaps(self) -> Array:
         """What each opening cuts out of the walls, (m,) Polygons a little deeper than its wall."""
         thickness_m = np.nan_to_num(self.openings["thickness_m"], nan=self.assumed_thickness_m)
@@ -517,9 +523,10 @@ def make_floorplan(
 def summarise_floorplan(plan: FloorPlan, drawn: Sequence[str] | None = None) -> str:
     """Return how many walls, openings of each type and rooms a plan has, in words.
 
-    Without walls it is how many faces of such. Types of openings may be given as they are drawn.
+    Without walls it is how many faces of such. Partings are no openings. Types of openings may be
+    given as they are drawn.
     """
-    types = plan.openings["type"].tolist() if drawn is None else drawn
+    types = plan.openings["type"][~plan.partings].tolist() if drawn is None else drawn
     counts = {"wall": len(plan.walls["wall"])}
     counts["wall face"] = 0 if counts["wall"] else len(plan.faces["face"])
     for kind, noun in OPENINGS.items():

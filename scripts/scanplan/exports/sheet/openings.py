@@ -45,9 +45,8 @@ def list_symbols(plan: FloorPlan) -> list[Symbol]:
         facts = facts_of("opening", plan.openings, row)
         said = [f"{kind} {number}, {plan.openings['width_m'][row]:.2f} m"]
         said += [str(facts[name]) for name in ("doubt", "corrected") if name in facts]
-        is_between = host < 0 <= plan.openings["room_b"][row]
         symbol = Symbol(
-            "parting" if kind == "passage" and is_between else kind,
+            "parting" if plan.partings[row] else kind,
             ends_m + shift_m * left,
             thick_m,
             f"{kind}-{number}",

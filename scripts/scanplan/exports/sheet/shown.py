@@ -16,8 +16,6 @@ from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.tolerances import END_M
 from scanplan.types import BoolArray, FloatArray
 
-_TYPES = {"swing": "door", "parting": "passage"}
-"""Of openings, by kinds of symbols that have another name."""
 _BUILT = ("door", "window", "glass")  # openings that rooms end at even where no wall is
 
 
@@ -67,7 +65,7 @@ class Shown:
     @property
     def contents(self) -> str:
         """How many walls, openings and rooms are drawn, and what every sheet of the plan says."""
-        drawn = [_TYPES.get(symbol.kind, symbol.kind) for symbol in self.symbols]
+        drawn = ["door" if symbol.kind == "swing" else symbol.kind for symbol in self.symbols]
         counts = floorplan.summarise_floorplan(self.plan, drawn)
         return "; ".join(filter(None, [self.titled.mark, counts]))
 
