@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from helpers.correcting import corrected, faces_of, write_plan
 from helpers.refusals import assert_told, refused
 from scanplan.plan import floorplan, planning
-from scanplan.store import tables
+from scanplan.store import schemas, tables
 
 ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
 BETWEEN = [4.05, 0.4]  # on the wall between the rooms, of 0.1 m, with a door from 1.0 to 1.9
@@ -34,9 +34,29 @@ def test_a_wall_moves_with_its_faces_and_its_door_stays_where_it_was_along_it(pl
     found = corrected(plan, {"element": "wall", "at": BETWEEN, "line": line})
     wall = row_of(found.walls, "wall", 5)
     assert ends_of(wall) == pytest.approx([4.55, -0.1, 4.55, 3.1])
-    assert wall["corrected"] == "changed by hand" and np.isnan(wall["sigma_offset_m"])
+    assert wall["corrected"] == "drawn by hand" and np.isnan(wall["sigma_offset_m"])
     np.testing.assert_allclose(sorted(faces_of(found, 5)[:, 0, 0]), [4.5, 4.6])
     assert ends_of(row_of(found.openings, "opening", 1)) == pytest.approx([4.55, 1.0, 4.55, 1.9])
+
+
+@pytest.mark.parametrize(
+    ("entry", "is_drawn"),
+    [
+        ({"element": "opening", "at": [4.1, 1.4], "swing": [4.5, 1.2]}, False),
+        ({"element": "opening", "at": [4.1, 1.4], "kind": "passage"}, False),
+        ({"element": "opening", "at": [4.1, 1.4], "lintel_m": 2.1}, False),
+        ({"element": "opening", "at": [4.1, 1.4], "width_m": 0.8}, True),
+        ({"element": "opening", "at": [4.1, 1.4], "line": [[4.05, 1.1], [4.05, 2.0]]}, True),
+        ({"element": "wall", "at": BETWEEN, "height_m": 1.2}, False),
+        ({"element": "opening", "at": [4.1, 1.4], "action": "remove"}, False),
+        ({"element": "wall", "at": BETWEEN, "thickness_m": 0.112}, True),
+    ],
+)
+def test_a_wall_or_opening_says_whether_a_person_drew_it(plan, entry, is_drawn):
+    found = corrected(plan, entry)
+    said = [*found.walls["corrected"], *found.openings["corrected"]]
+    (word,) = [word for word in said if word]
+    assert word.startswith(schemas.DRAWN) == is_drawn
 
 
 def test_faces_reach_to_the_ends_of_a_wall_that_is_made_longer_or_shorter(plan):

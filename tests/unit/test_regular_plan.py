@@ -360,8 +360,15 @@ def test_the_same_plan_gives_the_same_bytes():
 
 
 @pytest.mark.parametrize(
-    ("said", "is_kept"), [("changed by hand, A. Bee", True), ("added by hand", True),
-                          ("kept by hand", False), ("", False)])  # fmt: skip
+    ("said", "is_kept"),
+    [
+        ("drawn by hand, A. Bee", True),
+        ("added by hand", True),
+        ("changed by hand", False),
+        ("kept by hand", False),
+        ("", False),
+    ],
+)
 def test_a_size_that_a_person_stated_stays(said, is_kept):
     walls, openings = floorplan_making.walls(), floorplan_making.openings()
     walls["thickness_m"][5], walls["corrected"][5] = 0.112, said

@@ -314,6 +314,8 @@ too: as many as were expected through a window above its sill, or through a gap 
 """
 CHECKED = ("kept by hand", "checked by hand")
 """How column `corrected` begins where a person has looked, and changed nothing."""
+DRAWN = ("added by hand", "drawn by hand")
+"""How it begins where a person said where an element runs, or how wide or thick it is."""
 ROOMS = Schema(
     "rooms",
     5,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from scanplan.store.schemas import CHECKED
+from scanplan.store.schemas import DRAWN
 from scanplan.types import BoolArray, Columns, FloatArray
 
 _ROUNDS = 20  # shares settle in fewer
@@ -15,9 +15,8 @@ _BUILT_SIGMA_M = 0.005  # plaster and boards make walls of one type differ by as
 
 
 def find_stated(columns: Columns) -> BoolArray:
-    """Return which rows (n,) a person changed or added: these are as wide or thick as was said."""
-    said = np.asarray(columns["corrected"], str)
-    return (said != "") & ~np.array([of.startswith(CHECKED) for of in said.tolist()], bool)
+    """Return which rows (n,) a person drew or sized: these are as wide or thick as was said."""
+    return np.array([of.startswith(DRAWN) for of in columns["corrected"].tolist()], bool)
 
 
 def choose_sizes(

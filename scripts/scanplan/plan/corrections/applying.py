@@ -18,12 +18,16 @@ SAID = {
     "remove": "changed by hand",
     "keep": schemas.CHECKED[0],
     "change": "changed by hand",
-    "add": "added by hand",
+    "add": schemas.DRAWN[0],
+    "draw": schemas.DRAWN[1],
     "settle": schemas.CHECKED[1],
     "split": "changed by hand",
     "merge": "changed by hand",
 }
-"""What column `corrected` says of an element, with who said it, and on which day."""
+"""What column `corrected` says of an element, with who said it, and on which day: by actions, and
+of what is drawn elsewhere or of another size."""
+_DRAWN = ("line_m", "width_m", "thickness_m")
+"""What an entry may say of where an element runs, or of how wide or thick it is."""
 _TAPE_M = 0.005
 """ASSUME of a taped length without a standard deviation: what a tape sags, and its ends are off."""
 
@@ -169,18 +173,19 @@ def _change(rows: PlanRows, correction: Correction, row: Row, outcome: Outcome) 
         _remove(rows, correction, row, outcome)
         return None
     if correction.element != "furniture":
-        things.leave_doubt(row, said)
+        is_drawn = is_change and any(getattr(correction, of) is not None for of in _DRAWN)
+        things.leave_doubt(row, state_said(correction, "draw") if is_drawn else said)
     return None
 
 
-def state_said(correction: Correction) -> str:
-    """Return what column `corrected` says of what an entry is of.
+def state_said(correction: Correction, action: str = "") -> str:
+    """Return what column `corrected` says of what an entry is of, or of another action.
 
     >>> state_said(Correction("", "wall", "keep", (0, 0), by="A. Bee", when="2026-03-01T09:30:00Z"))
     'kept by hand, A. Bee, 2026-03-01'
     """
     day = correction.when[:_DAY]
-    return ", ".join(filter(None, [SAID[correction.action], correction.by, day]))
+    return ", ".join(filter(None, [SAID[action or correction.action], correction.by, day]))
 
 
 def _change_room(rows: PlanRows, room: Row, correction: Correction) -> None:
