@@ -16,16 +16,18 @@ import yaml
 from correct_plan import correct_plan
 from export_files import export_files
 from export_plan import export_plan
+from export_presentation import export_presentation
 from helpers import floorplan_making
 from helpers.default_settings import SETTINGS
 from helpers.report_making import registration
 from scanplan.plan import planning
-from scanplan.project import export_formats, stage_settings
+from scanplan.project import catalogue_file, export_formats, stage_settings
 from scanplan.store import schemas, tables
 from scanplan.store.pose_columns import pose_columns
 
 DRAWN = ("geojson", "dxf", "svg", "pdf", "png", "pgm", "yaml")
 FILES = export_formats.list_files(export_formats.FILES)
+REGULAR = export_formats.PRESENTATION["presentation"]
 
 
 def exported(folder, corrections=(), name="office", **settings):
@@ -59,7 +61,11 @@ def exported(folder, corrections=(), name="office", **settings):
     written |= {"ids": folder / "ids.parquet", "known": folder / "known.parquet"}
     own = stage_settings.select_files(SETTINGS)
     export_files(plan, written, name=name, source="a", settings=own)
-    return files
+    of_regular = {what: folder / file for what, file in REGULAR.items()}
+    regular = stage_settings.select_presentation(SETTINGS) | settings
+    sizes = catalogue_file.read_catalogue(None)
+    export_presentation(plan, of_regular, name=name, settings=regular, catalogue=sizes)
+    return files | {"regular": of_regular["dxf"]}
 
 
 def pdf_texts(pdf):

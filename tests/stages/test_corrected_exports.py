@@ -53,8 +53,9 @@ def test_geojson_says_so(corrected):
 
 
 @pytest.mark.wording
-def test_the_building_model_says_so(corrected):
-    model = ifcopenshell.open(corrected["ifc"])
+@pytest.mark.parametrize("what", ["ifc", "editable"])
+def test_building_models_say_so(corrected, what):
+    model = ifcopenshell.open(corrected[what])
     found = {}
     for kind, classes in {"wall": ["IfcWall"], "opening": ["IfcDoor", "IfcWindow"]}.items():
         products = [p for ifc_class in classes for p in model.by_type(ifc_class)]
@@ -95,11 +96,12 @@ def test_the_3d_model_says_so(corrected):
 
 
 @pytest.mark.wording
-def test_the_drawing_says_so_on_a_layer_of_its_own(corrected):
-    document = ezdxf.readfile(corrected["dxf"])
+@pytest.mark.parametrize(("what", "n_around"), [("dxf", 4), ("regular", 0)])
+def test_drawings_say_so_the_measured_one_on_a_layer_of_its_own(corrected, what, n_around):
+    document = ezdxf.readfile(corrected[what])
     assert not document.audit().errors
     space = document.modelspace()
-    assert len(space.query('LWPOLYLINE[layer=="A-ANNO-REVS"]')) == 4
+    assert len(space.query('LWPOLYLINE[layer=="A-ANNO-REVS"]')) == n_around
     axes = space.query('LWPOLYLINE[layer=="A-WALL-CNTR"]')
     facts = [[value for _, value in axis.get_xdata("SCANPLAN")] for axis in axes]
     walls = {f[f.index("wall") + 1]: f[f.index("corrected") + 1] for f in facts if "corrected" in f}

@@ -37,6 +37,11 @@ def test_two_pieces_are_the_longer_one_which_has_what_both_have():
     assert regular.openings["wall"].tolist() == [1] and regular.hosts.tolist() == [0]
 
 
+def test_what_a_person_said_of_any_piece_is_said_of_the_wall():
+    regular, _ = joined(WEST, EAST, SPUR, corrected=["kept by hand", "", ""])
+    assert regular.walls["corrected"].tolist() == ["kept by hand", ""]
+
+
 def test_ends_are_as_uncertain_as_the_pieces_there():
     regular, _ = joined(WEST, EAST, sigma_end0_m=[0.01, 0.02], sigma_end1_m=[0.03, 0.04])
     assert regular.walls["sigma_end0_m"].tolist() == [0.01]

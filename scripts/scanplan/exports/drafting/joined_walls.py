@@ -20,6 +20,7 @@ _OF_PIECES: Mapping[str, Callable[[Array], object]] = {
     "n_points": np.sum,
     **dict.fromkeys(("z_max_m", "rmse_m", "sigma_offset_m", "moved_m"), np.fmax.reduce),
     "n_scans": np.max,
+    "corrected": lambda said: next(filter(None, said), ""),
 }
 """What a wall has of all its pieces; all else is that of the longest, ends apart."""
 

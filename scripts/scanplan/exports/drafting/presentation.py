@@ -87,10 +87,8 @@ def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str])
     is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
     spans_m = _find_spans(regular, is_measured)
     doubtful = measured.walls["wall"][content.is_doubtful(measured.walls)]
-    n_openings = len(regular.openings["opening"])
-    unmarked = {**regular.openings, "corrected": np.full(n_openings, "", object)}
     return Shown(
-        plan=replace(regular, openings=unmarked),
+        plan=regular,
         titled=measured,
         marks=[*_draw_marks(regular)],
         symbols=[*_list_symbols(regular)],
@@ -153,9 +151,8 @@ def _list_symbols(plan: FloorPlan) -> Iterator[Symbol]:
     # a hole in a wall is one, whatever is behind it
     is_recess = ~shapely.is_empty(_find_backs(plan))
     for row, drawn in enumerate(list_symbols(plan)):
-        # that a person said something of it is on the measured sheet
-        facts = {name: value for name, value in drawn.facts.items() if name != "corrected"}
-        symbol = replace(drawn, facts=facts)
+        # the line around what a person corrected is on the measured sheet
+        symbol = replace(drawn, is_marked=False)
         if is_recess[row]:
             yield replace(symbol, kind="recess", block=choose_block(symbol))
         elif not is_none[row]:

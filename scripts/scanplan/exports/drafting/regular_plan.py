@@ -208,11 +208,7 @@ def _move_openings(plan: FloorPlan, settings: DraftSettings) -> Columns:
         settings.tolerance_m,
     )
     thickness_m = np.append(plan.walls["thickness_m"], np.nan)[plan.hosts]
-    return {
-        **_leave_doubts(openings),
-        "corrected": openings["corrected"],
-        "thickness_m": thickness_m,
-    }
+    return {**_leave_doubts(openings), "thickness_m": thickness_m}
 
 
 def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
@@ -235,10 +231,7 @@ def _move_rooms(plan: FloorPlan, moved: MovedWalls) -> Columns:
 
 
 def _leave_doubts(columns: Columns) -> Columns:
-    kept = {name: values for name, values in columns.items() if name not in _DOUBTS}
-    if "corrected" in kept:
-        kept["corrected"] = np.full(len(kept["corrected"]), "", object)
-    return kept
+    return {name: values for name, values in columns.items() if name not in _DOUBTS}
 
 
 def _turn_between(before_m: FloatArray, after_m: FloatArray) -> FloatArray:

@@ -123,9 +123,10 @@ def lay_out(
     page = replace(page, locale=facts.locale)
     # the page is chosen with room for what its scale may make too small to draw
     marks = _drop_specks(page, marks)
-    marks += content.draw_corrections(plan, _apart_m(page))
+    if shown.is_labelled:
+        marks += content.draw_corrections(plan, _apart_m(page))
     space = _open_space(page, marks, symbols)
-    stamps = words.stamp_rooms(page, plan, space, is_doubted=shown.is_labelled)
+    stamps = words.stamp_rooms(page, plan, space, is_marked=shown.is_labelled)
     on_paper = page.place_shape(shown.uncertain)
     drawn = _dimension(page, shown, marks, on_paper, space) if shown.is_dimensioned else []
     rooms = [
@@ -178,7 +179,7 @@ def _list_legend(shown: Shown, marks: list[Mark], *, is_about: bool) -> list[str
     kinds = {symbol.kind for symbol in shown.symbols}
     if shown.is_labelled and list_doubts(plan):
         kinds.add("verify")
-    tables = (plan.walls, plan.openings, plan.rooms)
+    tables = (plan.walls, plan.openings, plan.rooms) if shown.is_labelled else ()
     if any(content.is_corrected(columns).any() for columns in tables):
         kinds.add("corrected")
     if is_about:

@@ -104,6 +104,8 @@ class Symbol:
     element, title : str
     facts : dict
     verify : bool
+    is_marked : bool
+        Whether lines around it show that it is doubtful, or was corrected.
     block : str
         Of `symbols.BLOCKS`, what it is drawn with; empty for that of its kind.
     """
@@ -115,6 +117,7 @@ class Symbol:
     title: str
     facts: Facts = field(default_factory=dict, repr=False)
     verify: bool = False
+    is_marked: bool = True
     block: str = ""
 
     @property
@@ -138,7 +141,7 @@ class Symbol:
     def surrounded_by(self) -> list[str]:
         """The kinds of lines around it: of what is to be verified, or was corrected by hand."""
         stated = {"verify": self.verify, "corrected": "corrected" in self.facts}
-        return [kind for kind, holds in stated.items() if holds]
+        return [kind for kind, holds in stated.items() if holds and self.is_marked]
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,8 @@ class Stamp:
     facts : dict of str to str
         `NUMBER`, `NAME`, `AREA`, `PERIMETER`, `HEIGHT`, `CLOSED`, `CORRECTED`, `USE`, as text.
     verify : bool
+    marks : str
+        Behind its name, of what was corrected or is doubtful.
     room : int
         Its number in the plan's table, which `NUMBER` is where nobody gave it another.
     """
@@ -177,6 +182,7 @@ class Stamp:
     words: list[Word]
     facts: dict[str, str]
     verify: bool = False
+    marks: str = ""
     room: int = -1
 
 

@@ -42,7 +42,7 @@ class Shown:
     beside : sequence of shapely geometries
         What else chains of dimensions keep off.
     is_labelled : bool
-        Whether doubts stand beside elements, and widths beside openings of every kind.
+        Whether doubts and corrections are marked, and widths stand beside openings of every kind.
     is_dimensioned : bool
         Whether facades and rooms have dimensions, and openings that are in none.
     notes : sequence of str

@@ -271,10 +271,8 @@ def draw_room_table(
     yield from _heads(slots, names[: len(ends)], ends)
     rooms = zip(stamps, numbers, sizes, _row_places(slots), strict=True)
     for stamp, number, of_room, (x, y) in rooms:
-        facts = stamp.facts
-        marks = " *" * (facts["CORRECTED"] != "no") + " ?" * stamp.verify
-        marks_mm = measure_width_mm(marks, Letters.SMALL)
-        name = shorten_text(facts["NAME"], Letters.SMALL, name_mm - marks_mm) + marks
+        marks_mm = measure_width_mm(stamp.marks, Letters.SMALL)
+        name = shorten_text(stamp.facts["NAME"], Letters.SMALL, name_mm - marks_mm) + stamp.marks
         texts = [number, name, *of_room][: len(ends)]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"

@@ -25,14 +25,14 @@ _DETAIL = (Letters.SMALL, Paper.NAME)
 
 
 def stamp_rooms(
-    page: Page, plan: FloorPlan, space: LabelSpace, *, is_doubted: bool = True
+    page: Page, plan: FloorPlan, space: LabelSpace, *, is_marked: bool = True
 ) -> list[Stamp]:
     """Return the rooms' stamps, by number: small rooms have the choice of places first.
 
-    Doubts are marked if they are to be.
+    Doubts and corrections are marked if they are to be.
     """
     rooms = plan.rooms
-    doubtful, corrected = find_doubtful_rooms(plan) & is_doubted, is_corrected(rooms)
+    doubtful, corrected = find_doubtful_rooms(plan) & is_marked, is_corrected(rooms)
     stamps: dict[int, Stamp] = {}
     areas: list[BaseGeometry] = plan.areas.tolist()
     for row in np.argsort(rooms["area_m2"], kind="stable").tolist():
@@ -53,7 +53,7 @@ def stamp_rooms(
         outline = page.place_shape(areas[row])
         middle = page.to_paper(np.array([rooms["x_m"][row], rooms["y_m"][row]]))
         title = shorten_text(name, Letters.MEDIUM, Paper.NAME)
-        marks = " *" * int(corrected[row]) + " ?" * int(doubtful[row])
+        marks = " *" * int(corrected[row] and is_marked) + " ?" * int(doubtful[row])
         title += marks
         label = f"{facts['NUMBER']}{marks}"
         # a name that a person gave does not say the number that tables have
@@ -63,7 +63,7 @@ def stamp_rooms(
         small = [page.locale.say(area), *([use] if use else [])]
         chosen = space.place(_stamp_places(outline, middle, title, small, label, number))
         words = [] if chosen is None else [to_plan_word(page, word) for word in chosen.words]
-        stamps[row] = Stamp(words, facts, bool(doubtful[row]), number)
+        stamps[row] = Stamp(words, facts, bool(doubtful[row]), marks, number)
     return [stamps[row] for row in sorted(stamps)]
 
 
