@@ -29,7 +29,7 @@ from scanplan.plan import floorplan_files
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.plan.scaled_plan import scale_floorplan
 from scanplan.plan.survey_scale import find_factor
-from scanplan.project.catalogue_file import read_catalogue
+from scanplan.project.catalogue_file import read_catalogue, translate_names
 from scanplan.project.words_file import tag_language
 from scanplan.recordings.clocks import end_of_survey_ns
 from scanplan.stage import log
@@ -94,7 +94,7 @@ def export_files(
         site=site,
         locale=locale,
     )
-    sizes = catalogue or read_catalogue(None)
+    sizes = translate_names(catalogue or read_catalogue(None), locale.say)
 
     @cache
     def draft() -> FloorPlan:
@@ -115,7 +115,7 @@ def export_files(
         "editable": cache(lambda: _format_editable(drawn, draft(), ids, origin, sizes)),
         "bcf": lambda: doubt_topics.format_bcf(drawn, ids, origin, models()),
         "openplan": lambda: _format_openplan(drawn, ids, origin),
-        "glb": lambda: mesh.format_glb(drawn, ids, site),
+        "glb": lambda: mesh.format_glb(drawn, ids, site, locale),
         "trajectory": lambda: tum.format_tum(registered.t_ns, registered.map_from_sensor),
         "localiser": lambda: _format_localiser(plan["poses"]),
     }

@@ -1,6 +1,7 @@
 """Results of the plan of two rooms, with all files that may be edited elsewhere and come back."""
 
 import json
+from dataclasses import replace
 
 import yaml
 
@@ -10,14 +11,18 @@ from scanplan.exports import dxf, ifc
 from scanplan.exports.data import element_ids, openplan
 from scanplan.exports.drafting.presentation import compose_presentation
 from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settings
+from scanplan.exports.model_origin import ModelOrigin
 from scanplan.exports.sheet.composition import compose_sheet
+from scanplan.exports.sheet.facts import SheetFacts
+from scanplan.exports.sheet.locale import make_locale
 from scanplan.plan import floorplan_files, planning
 from scanplan.plan.scaled_plan import scale_floorplan
-from scanplan.project.catalogue_file import read_catalogue
+from scanplan.project.catalogue_file import read_catalogue, translate_names
+from scanplan.project.words_file import read_words
 from scanplan.store import schemas, tables
 
 
-def make_results(root):
+def make_results(root, language="en"):
     """A folder results/office of the plan, uncorrected, whose recording is in `rec` beside it."""
     results = root / "results/office"
     (results / "plan").mkdir(parents=True)
@@ -29,7 +34,7 @@ def make_results(root):
         f'<script type="application/json" id="data">{data}</script>'
     )
     write_plan(results / "plan")
-    export(results, results / "plan")
+    export(results, results / "plan", language)
     return results
 
 
@@ -39,9 +44,11 @@ def read_plan(folder):
     return floorplan_files.read_floorplan(paths, "office")
 
 
-def export(results, folder):
+def export(results, folder, language="en"):
     """Write the files that may be edited, of the tables in a folder."""
-    plan = scale_floorplan(read_plan(folder))
+    locale = make_locale("m", read_words(language))
+    origin, facts = ModelOrigin(locale=locale), SheetFacts(locale=locale)
+    plan = replace(scale_floorplan(read_plan(folder)), room_word=locale.say("Room"))
     known = element_ids.no_known()
     kept = results / "plan/known_elements.parquet"
     if kept.exists():
@@ -53,15 +60,17 @@ def export(results, folder):
     columns = element_ids.tabulate_ids(plan, found)
     tables.write_table(results / "plan/ids.parquet", schemas.ELEMENT_IDS, columns)
     ids = element_ids.ids_of_table(columns)
-    catalogue = read_catalogue(None)
+    catalogue = translate_names(read_catalogue(None), locale.say)
     regular, drafted = draft_plan(plan, make_draft_settings(0.05, catalogue))
     own_ids = element_ids.take_ids(ids, plan, regular)
     files = {
-        "plan.openplan3d.json": openplan.format_openplan(plan, ids),
-        "plan.ifc": ifc.format_ifc(plan, ids),
-        "presentation.ifc": ifc.format_ifc(regular, own_ids, catalogue=catalogue),
-        "plan.dxf": dxf.format_dxf(compose_sheet(plan)),
-        "presentation.dxf": dxf.format_dxf(compose_presentation(plan, regular, drafted), "m"),
+        "plan.openplan3d.json": openplan.format_openplan(plan, ids, origin),
+        "plan.ifc": ifc.format_ifc(plan, ids, origin),
+        "presentation.ifc": ifc.format_ifc(regular, own_ids, origin, catalogue=catalogue),
+        "plan.dxf": dxf.format_dxf(compose_sheet(plan, facts)),
+        "presentation.dxf": dxf.format_dxf(
+            compose_presentation(plan, regular, drafted, facts), "m"
+        ),
     }
     for name, text in files.items():
         (results / "plan" / name).write_text(text, encoding="utf-8")

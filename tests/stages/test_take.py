@@ -455,6 +455,47 @@ def test_furniture_erased_in_the_drawing(results):
     assert len(run_again(results).furniture["kind"]) == 0
 
 
+# --- other languages ---
+
+
+@pytest.fixture(scope="module", params=["de", "fr", "es"])
+def foreign(request, tmp_path_factory):
+    return make_results(tmp_path_factory.mktemp(request.param), request.param)
+
+
+def test_files_in_another_language_come_back(foreign):
+    edits = {"json": edited_json, "ifc": edited_ifc, "dxf": edited_dxf}
+    for name in FILES:
+        edit = edits[name.rpartition(".")[2]]
+        told = taken(foreign, edit(foreign, lambda _: None, name))
+        assert "0 changes" in told[0] and entries_of(foreign) == []
+
+
+@MODELS
+def test_edits_of_a_model_in_another_language_are_taken(foreign, name):
+    def edit(model):
+        move_with_door(model)
+        model.by_type("IfcSpace")[1].LongName = "Store"
+
+    taken(foreign, edited_ifc(foreign, edit, name))
+    wall, room = entries_of(foreign)
+    (foreign.parents[1] / "rec/corrections.yaml").unlink()
+    assert [end[0] for end in wall["line"]] == pytest.approx([4.25, 4.25], abs=0.001)
+    assert (room["element"], room["name"]) == ("room", "Store")
+
+
+@DRAWINGS
+def test_edits_of_a_drawing_in_another_language_are_taken(foreign, name):
+    def edit(document):
+        entity_of(document, opening=1)[0].dxf.name = "WINDOW"
+        stamp_of(document, "1").get_attrib("NAME").dxf.text = "Store"
+
+    taken(foreign, edited_dxf(foreign, edit, name))
+    opening, room = entries_of(foreign)
+    (foreign.parents[1] / "rec/corrections.yaml").unlink()
+    assert (opening["kind"], room["name"]) == ("window", "Store")
+
+
 # --- corrections that are there ---
 
 

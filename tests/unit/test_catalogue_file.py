@@ -30,6 +30,7 @@ def written(folder, text):
 def test_a_catalogue_gives_sizes_by_name(tmp_path):
     read = read_catalogue(written(tmp_path, GOOD))
     assert read == {
+        "is_ours": False,
         "walls": {"thin": 0.08, "thick": 0.3},
         "doors": {"leaf": 1.0},
         "windows": {},

@@ -19,7 +19,7 @@ from scanplan.exports.drafting.regular_plan import draft_plan, make_draft_settin
 from scanplan.exports.model_origin import ModelOrigin, Site
 from scanplan.exports.sheet.composition import compose_sheet
 from scanplan.exports.sheet.locale import Locale, make_locale
-from scanplan.project.catalogue_file import read_catalogue
+from scanplan.project.catalogue_file import read_catalogue, translate_names
 from scanplan.project.words_file import read_words
 
 pytestmark = pytest.mark.wording
@@ -243,18 +243,73 @@ def test_names_are_in_the_language_but_for_those_of_a_person():
     assert walls[1] == "Wand 1, außen, Dicke angenommen" and walls[5] == "Wand 5, innen, 10 cm"
 
 
-@pytest.mark.parametrize("language", ["de", "es", "fr"])
-def test_no_name_of_an_element_stays_english(language):
-    def list_names(locale):
-        tables = SEEN | {"furniture": floorplan_making.furniture(kind="column")}
-        model = opened(plan(**tables), origin=ModelOrigin(locale=locale))
-        kinds = ("IfcBuildingElement", "IfcElementType", "IfcOpeningElement", "IfcMaterial")
-        found = {of.Name for kind in kinds for of in model.by_type(kind)}
-        return {name for name in found if name and any(map(str.isalpha, name))}
+PROGRAMS = ("office", "scanplan", "Body", "Axis", "FootPrint", "Model", "Ours", "Us", "W", "D")
+"""Names that are no words of a language: of the plan, of the program, of contexts and systems."""
 
-    english = list_names(make_locale("m", None))
-    assert len(english) > 15
-    assert english & list_names(make_locale("m", read_words(language))) == set()
+
+def list_words(model):
+    """The words that a model shows: names of its elements, and what their properties say.
+
+    Kinds of openings (ObjectType) and enumerations of IFC are for programs.
+    """
+    shown = [
+        *("IfcSpatialElement", "IfcBuildingElement", "IfcElementType", "IfcOpeningElement"),
+        *("IfcMaterial", "IfcFurnishingElement", "IfcPresentationStyle", "IfcVirtualElement"),
+    ]
+    found = {of.Name for kind in shown for of in model.by_type(kind)}
+    found |= {of.Category for of in model.by_type("IfcMaterial")}
+    found |= {of.LayerSetName for of in model.by_type("IfcMaterialLayerSet")}
+    found |= {of.FamilyName for of in model.by_type("IfcPerson")}
+    values = [of.NominalValue for of in model.by_type("IfcPropertySingleValue")]
+    found |= {value.wrappedValue for value in values if value is not None}
+    texts = {text for text in found if isinstance(text, str) and any(map(str.isalpha, text))}
+    return texts - {*PROGRAMS}
+
+
+@pytest.mark.parametrize("is_regular", [False, True])
+@pytest.mark.parametrize("language", ["de", "es", "fr"])
+def test_nothing_that_a_person_reads_in_a_model_stays_english(language, is_regular):
+    walls = floorplan_making.walls() | {"top_m": np.array([np.nan] * 5 + [1.2])}
+    walls["corrected"][5] = "drawn by hand"
+    walls["doubt"] = np.array(["", "may be open in part, bounds no room"] + [""] * 4, object)
+    sizes = read_catalogue(None)
+
+    def read(locale):
+        drawn = plan(**SEEN, walls=walls, furniture=floorplan_making.furniture(kind="column"))
+        drawn = replace(drawn, room_word=locale.say("Room"))
+        named = translate_names(sizes, locale.say)
+        if is_regular:
+            drawn = draft_plan(drawn, make_draft_settings(0.05, named))[0]
+        about = {"catalogue": named} if is_regular else {}
+        return list_words(opened(drawn, origin=ModelOrigin(locale=locale), **about))
+
+    english, other = read(make_locale("m", None)), read(make_locale("m", read_words(language)))
+    assert len(english) > 30
+    assert english & other == set()
+
+
+def test_a_catalogue_of_ours_is_named_in_the_language_and_one_of_a_person_by_him(tmp_path):
+    german = make_locale("m", read_words("de")).say
+    ours = translate_names(read_catalogue(None), german)
+    assert ours["walls"]["Ständerwand 100"] == 0.1 and ours["doors"]["Tür 90"] == 0.9
+    path = tmp_path / "own.yaml"
+    path.write_text(
+        "walls: [{name: brick 115, size_m: 0.115, code: W}]\n"
+        "doors: []\nwindows: []\nfacade_m: 0.3\n"
+    )
+    own = translate_names(read_catalogue(path), german)
+    assert own["walls"] == {"brick 115": 0.115} and own["codes"]["walls"] == {"brick 115": "W"}
+    assert translate_names(own | {"is_ours": True}, german)["codes"]["walls"] == {
+        "Mauerwerk 115": "W"
+    }
+    # no two sizes of ours are of one name in any language
+    for language in ("de", "es", "fr"):
+        say = make_locale("m", read_words(language)).say
+        for catalogue in (read_catalogue(None), read_catalogue("north_america")):
+            named = translate_names(catalogue, say)
+            for kind in ("walls", "doors", "windows"):
+                assert len(named[kind]) == len(catalogue[kind])
+                assert not set(named[kind]) & set(catalogue[kind])
 
 
 def test_names_say_what_an_element_is_by_the_number_that_tables_have():

@@ -14,6 +14,7 @@ from scanplan.errors import StageError
 from scanplan.exports import dxf
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
+from scanplan.exports.model_colours import COLOURS
 from scanplan.exports.model_origin import Site
 from scanplan.exports.sheet import title
 from scanplan.exports.sheet.composition import compose_sheet
@@ -23,8 +24,13 @@ from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
 from scanplan.exports.sheet.styles import LAYERS, STYLES, Paper
-from scanplan.plan.floorplan import GeoReference
+from scanplan.plan.corrections.applying import SAID
+from scanplan.plan.floorplan import HEIGHTS, GeoReference
+from scanplan.plan.floorplan_files import UNRATED
 from scanplan.project.words_file import read_layers, read_words
+from scanplan.validation.confidence import NOT_CLOSED, OF_DOUBTFUL_WALLS
+from scanplan.validation.doubts import MARKS
+from scanplan.validation.element_features import REASONS
 
 SETTINGS = DraftSettings(0.05, (0.1, 0.2), (0.9, 1.0), (1.2,), 0.3)
 
@@ -100,6 +106,14 @@ def test_german_says_of_how_many_walls_in_the_dative_and_percents_apart():
     assert german.say(f"Of 1 wall 1 {of}").startswith("Von 1 Wand 1 ")
     said = german.say("12 of 12 rooms are closed, 100% of the floor")
     assert said.endswith("100 % der Fläche")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_whatever_a_model_may_say_has_words(language):
+    words = read_words(language)["phrases"]
+    said = [*REASONS.values(), *COLOURS, *HEIGHTS.values(), *SAID.values(), *MARKS.values()]
+    said += [NOT_CLOSED, OF_DOUBTFUL_WALLS, UNRATED]
+    assert {text for text in said if text not in words} == {"?"}
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -9,6 +9,8 @@ import trimesh
 from helpers import floorplan_making
 from helpers.floorplan_making import FOOTPRINT_M2, HEIGHT_M, VOID_M3, bare, plan
 from scanplan.exports.data import element_ids, mesh
+from scanplan.exports.sheet.locale import make_locale
+from scanplan.project.words_file import read_words
 
 
 def read(drawn):
@@ -45,6 +47,16 @@ def test_objects_have_names_ids_and_materials():
     assert extras["global_id"] == ids["opening"][1]
     colours = {n: scene.geometry[n].visual.material.name for n in ("Wall 0", "Wall 2", "Window 2")}
     assert colours == {"Wall 0": "wall", "Wall 2": "to verify", "Window 2": "window"}
+
+
+@pytest.mark.wording
+def test_objects_and_materials_are_named_in_the_language():
+    german = make_locale("m", read_words("de"))
+    drawn = plan(room_word=german.say("Room"))
+    content = mesh.format_glb(drawn, element_ids.ids_from_places(drawn), locale=german)
+    shapes = trimesh.load_scene(io.BytesIO(content), file_type="glb").geometry
+    assert {"Wand 1", "Tür 0", "Fenster 2", "Raum 1"} < set(shapes)
+    assert shapes["Wand 2"].visual.material.name == "zu prüfen"
 
 
 def test_a_doubtful_door_is_shown_as_such():

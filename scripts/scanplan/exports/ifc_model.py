@@ -307,7 +307,8 @@ class IfcModel:
             *rgb, opacity = read_colour(name)
             tone = self.new("IfcColourRgb", None, *rgb)
             shading = self.new("IfcSurfaceStyleShading", tone, 1 - opacity)
-            self._styles[name] = self.new("IfcSurfaceStyle", name, "BOTH", [shading])
+            shown = self.origin.locale.say(name)
+            self._styles[name] = self.new("IfcSurfaceStyle", shown, "BOTH", [shading])
         for solid in solids:
             self.new("IfcStyledItem", solid, [self._styles[name]], None)
 
@@ -329,8 +330,9 @@ class IfcModel:
         return datetime.fromtimestamp(self.origin.t_ns // 10**9, UTC)
 
     def _owner_history(self) -> entity_instance:
-        person = self.new("IfcPerson", None, self.origin.author or "not stated")
-        organisation = self.new("IfcOrganization", None, self.origin.organisation or "not stated")
+        nobody = self.origin.locale.say("not stated")
+        person = self.new("IfcPerson", None, self.origin.author or nobody)
+        organisation = self.new("IfcOrganization", None, self.origin.organisation or nobody)
         maker = self.new("IfcOrganization", None, _APPLICATION)
         application = self.new(
             "IfcApplication",
@@ -405,12 +407,13 @@ class IfcModel:
         The building's height 0 is its floor, at `floor_m` of the map frame.
         """
         is_placed = self.origin.site.crs is not None
+        say = self.origin.locale.say
         whole = project
         placement = None
         for ifc_class, name, height_m in (
-            ("IfcSite", "Site" if is_placed else "Site, place on earth unknown", 0.0),
+            ("IfcSite", say("Site" if is_placed else "Site, place on earth unknown"), 0.0),
             ("IfcBuilding", self.origin.project or self.name, floor_m),
-            ("IfcBuildingStorey", self.origin.storey or "Surveyed storey", 0.0),
+            ("IfcBuildingStorey", self.origin.storey or say("Surveyed storey"), 0.0),
         ):
             placement = self.placement((0, 0, height_m), (1, 0), placement)
             part = self.root(

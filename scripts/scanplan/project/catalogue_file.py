@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from scanplan.errors import StageError
 from scanplan.project import texts
-from scanplan.project.yaml_file import find_ours, is_number, read_yaml
+from scanplan.project.yaml_file import find_ours, is_number, list_ours, read_yaml
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
     from scanplan.types import FilePath
 
 _OURS = Path(__file__).resolve().parents[3] / "config/catalogue.yaml"
@@ -35,7 +37,8 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
     Returns
     -------
     dict
-        `walls`, `doors` and `windows`, each a dict of name to size in metres; `facade_m`;
+        `is_ours`, whether it is none of a person; `walls`, `doors` and `windows`, each a dict of
+        name to size in metres; `facade_m`;
         `classification`, the name of a `system` and the code of each list, its `source` and
         `edition` where it has them, and the `titles` of codes, empty of none; `codes` of entries
         that have their own, of each list by their names.
@@ -54,11 +57,25 @@ def read_catalogue(path: FilePath | None) -> dict[str, Any]:
         raise StageError(f"{file}: has too much or too little: {wrong}; {_REMEDY}")
     codes: dict[str, dict[str, str]] = {kind: {} for kind in _LIMITS_M}
     return {
+        "is_ours": file in (_OURS, *list_ours("catalogues").values()),
         "classification": _check_classification(f"{file}: classification", classification),
         "codes": codes,
         **{k: _check_sizes(f"{file}: {k}", k, values[k], codes[k]) for k in _LIMITS_M},
         "facade_m": _check_size(f"{file}: facade_m", values["facade_m"], _FACADE_M),
     }
+
+
+def translate_names(catalogue: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
+    """Return a catalogue of ours with the names of its sizes in a language; a person's as it is."""
+    if not catalogue["is_ours"]:
+        return {**catalogue}
+    codes = {kind: _rename(of, say) for kind, of in catalogue["codes"].items()}
+    sizes = {kind: _rename(catalogue[kind], say) for kind in _LIMITS_M}
+    return {**catalogue, **sizes, "codes": codes}
+
+
+def _rename(values: Mapping[str, Any], say: Callable[[str], str]) -> dict[str, Any]:
+    return {say(name): value for name, value in values.items()}
 
 
 def _check_classification(place: str, given: object) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.model_colours import COLOURS, colour_of, read_colour
 from scanplan.exports.model_origin import NOWHERE, Site
 from scanplan.exports.opening_extents import LEAF_M, vertical_extent_m
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.geometry import overlays
 from scanplan.plan import floorplan
 from scanplan.plan.floorplan import FloorPlan
@@ -59,7 +60,8 @@ class Solid:
 class _Model:
     """A glTF file that grows by one object after the other."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, locale: Locale) -> None:
+        self._locale = locale
         self.content: dict[str, Any] = {
             "asset": {"version": "2.0", "generator": "scanplan"},
             "scene": 0,
@@ -139,25 +141,28 @@ class _Model:
     def _material(self, colour: str) -> int:
         if colour not in self._materials:
             *rgb, opacity = read_colour(colour)
+            name = self._locale.say(colour)
             shading = {"baseColorFactor": [*rgb, opacity], "metallicFactor": 0.0}
-            material = {"name": colour, "pbrMetallicRoughness": shading, "doubleSided": True}
+            material = {"name": name, "pbrMetallicRoughness": shading, "doubleSided": True}
             blended = {"alphaMode": "BLEND"} if opacity < 1 else {}
             self._materials[colour] = len(self.content["materials"])
             self.content["materials"].append(material | blended)
         return self._materials[colour]
 
 
-def format_glb(plan: FloorPlan, ids: ElementIds, site: Site = NOWHERE) -> bytes:
+def format_glb(
+    plan: FloorPlan, ids: ElementIds, site: Site = NOWHERE, locale: Locale = ENGLISH
+) -> bytes:
     """Return a plan as a binary glTF file: walls with openings, doors, windows, rooms' floors.
 
     Metres, y up; x is the map frame's, its y is -z here, 0 the floor. There is no ceiling, so that
-    one sees in. Objects are named by kind and number, and have the building model's
-    GlobalIds. Where the map lies on earth a node above all turns x to east and -z to north, and
-    states its system and where its origin is in it: coordinates have single precision.
+    one sees in. Objects are named by kind and number in a language, and have the building
+    model's GlobalIds. Where the map lies on earth a node above all turns x to east and -z to north,
+    and states its system and where its origin is in it: coordinates have single precision.
     """
-    model = _Model(plan.name)
+    model = _Model(plan.name, locale)
     columns = {"wall": plan.walls, "opening": plan.openings, "room": plan.rooms}
-    for solid in list_solids(plan):
+    for solid in list_solids(plan, locale):
         about = _about(ids[solid.kind][solid.row], columns[solid.kind], solid.row)
         model.add(solid.name, about, solid.colour, solid.triangles_m)
     if site.is_placed:
@@ -166,21 +171,22 @@ def format_glb(plan: FloorPlan, ids: ElementIds, site: Site = NOWHERE) -> bytes:
     return model.pack()
 
 
-def list_solids(plan: FloorPlan) -> Iterator[Solid]:
+def list_solids(plan: FloorPlan, locale: Locale = ENGLISH) -> Iterator[Solid]:
     """Yield walls with their openings, doors, windows, panes and rooms' floors as bodies."""
     for row, body in enumerate(plan.bodies):
         state = "wall" if plan.walls["state"][row] == "observed" else "inferred wall"
         parts = [_prism(part, *extent_m) for part, extent_m in _solid_parts(plan, row, body)]
         colour = colour_of(plan.walls, row, state)
         number = plan.walls["wall"][row].item()
-        yield Solid("wall", number, row, f"Wall {number}", colour, np.concatenate(parts))
+        name = f"{locale.title('wall')} {number}"
+        yield Solid("wall", number, row, name, colour, np.concatenate(parts))
     lines_m = floorplan.centrelines_m(plan.openings)
     leaves = floorplan.buffer_lines(lines_m, np.full(len(lines_m), LEAF_M / 2))
     for row, kind in enumerate(plan.openings["type"]):
         if kind in COLOURS:
             number = plan.openings["opening"][row].item()
             leaf = _prism(leaves[row], *vertical_extent_m(plan, row))
-            name = f"{kind.capitalize()} {number}"
+            name = f"{locale.title(kind)} {number}"
             yield Solid("opening", number, row, name, colour_of(plan.openings, row, kind), leaf)
     for row, area in enumerate(plan.areas):
         number = plan.rooms["room"][row].item()

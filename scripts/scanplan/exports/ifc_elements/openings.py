@@ -223,13 +223,14 @@ def _describe_filling(
 def _describe_opening(
     model: IfcModel, storey: StoreyPlan, row: int, product: entity_instance
 ) -> None:
-    columns = storey.plan.openings
+    columns, locale = storey.plan.openings, model.origin.locale
+    joined = f" {locale.say('and')} ".join(storey.name_joined_rooms(row))
     properties = {
-        **describe_doubt(columns, row),
+        **describe_doubt(locale, columns, row),
         "SillMeasured": ("IfcBoolean", bool(np.isfinite(columns["sill_m"][row]))),
         "LintelMeasured": ("IfcBoolean", bool(np.isfinite(columns["lintel_m"][row]))),
         "Rays": ("IfcInteger", int(columns["n_rays"][row])),
-        "JoinsRooms": ("IfcLabel", " and ".join(storey.name_joined_rooms(row)) or None),
+        "JoinsRooms": ("IfcLabel", joined or None),
     }
     model.describe(product, EVIDENCE, properties)
     if storey.catalogue is not None:

@@ -119,9 +119,9 @@ def _add_space(model: IfcModel, storey: StoreyPlan, row: int) -> entity_instance
         model.describe(space, "Pset_SpaceOccupancyRequirements", occupied)
     properties = {
         "Closed": ("IfcBoolean", bool(columns["closed"][row])),
-        "HeightFrom": ("IfcLabel", HEIGHTS[plan.height_from]),
+        "HeightFrom": ("IfcLabel", model.origin.locale.say(HEIGHTS[plan.height_from])),
         "Scans": ("IfcInteger", int(columns["n_scans"][row])),
-        **describe_doubt(columns, row),
+        **describe_doubt(model.origin.locale, columns, row),
     }
     model.describe(space, EVIDENCE, properties)
     area_m2, net_m2 = float(columns["area_m2"][row]), float(plan.net_areas_m2[row])
@@ -155,7 +155,7 @@ def _build_layer(
 def _describe_level(model: IfcModel, product: entity_instance, level: str) -> None:
     """State that the height of a surface was seen, and how thick it is was not."""
     properties = {
-        "HeightFrom": ("IfcLabel", level),
+        "HeightFrom": ("IfcLabel", model.origin.locale.say(level)),
         "ThicknessMeasured": ("IfcBoolean", False),
     }
     model.describe(product, EVIDENCE, properties)

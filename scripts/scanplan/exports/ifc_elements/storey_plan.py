@@ -11,6 +11,7 @@ from scanplan.exports.data.element_ids import ElementIds
 from scanplan.exports.drafting.regular_plan import MEASURED
 from scanplan.exports.ifc_model import ClassCode
 from scanplan.exports.sheet.leaves import Swing
+from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.openings import find_swings
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.types import BoolArray, Columns
@@ -89,18 +90,18 @@ class StoreyPlan:
         return [names[room] for room in rooms if room in names]
 
 
-def describe_doubt(columns: Columns, row: int) -> dict[str, tuple[str, Any]]:
+def describe_doubt(locale: Locale, columns: Columns, row: int) -> dict[str, tuple[str, Any]]:
     """Return what a table says of the doubt about an element, and whether a person corrected it.
 
-    As far as it has such columns.
+    As far as it has such columns, in words of a language.
     """
     stated = {name: values[row] for name, values in columns.items()}
-    doubt = str(stated.get("doubt", ""))
+    doubt, corrected = (str(stated.get(name, "")) for name in ("doubt", "corrected"))
     return {
         "VerifyOnSite": ("IfcBoolean", bool(stated["verify"]) if "verify" in stated else None),
         "ProbabilityOfExistence": ("IfcReal", known(stated.get("p_true", np.nan))),
-        "Doubt": ("IfcText", doubt or None),
-        "Corrected": ("IfcLabel", str(stated.get("corrected", "")) or None),
+        "Doubt": ("IfcText", locale.say(doubt) or None),
+        "Corrected": ("IfcLabel", locale.credit(corrected) or None),
     }
 
 

@@ -120,7 +120,7 @@ def _cut_out(plan: FloorPlan, row: int) -> tuple[float, float]:
 
 
 def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_instance) -> None:
-    plan = storey.plan
+    plan, locale = storey.plan, model.origin.locale
     floor_m, _ = plan.storey_m
     columns = plan.walls
     is_low = bool(plan.low[row])
@@ -131,8 +131,8 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
         return "IfcLengthMeasure", known(columns[name][row] - above_m)
 
     properties = {
-        "State": ("IfcLabel", str(columns["state"][row])),
-        **describe_doubt(columns, row),
+        "State": ("IfcLabel", locale.say(str(columns["state"][row]))),
+        **describe_doubt(locale, columns, row),
         "ThicknessMeasured": ("IfcBoolean", bool(is_thick and columns["n_points"][row])),
         "OffsetStandardDeviation": known_m("sigma_offset_m"),
         "Radius": known_m("arc_radius_m"),
@@ -141,7 +141,7 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
         "EndStandardDeviation": known_m("sigma_end1_m"),
         "Residual": known_m("rmse_m"),
         "HeightMeasured": ("IfcBoolean", is_low or plan.height_from == "ceiling"),
-        "HeightFrom": ("IfcLabel", height_from),
+        "HeightFrom": ("IfcLabel", locale.say(height_from)),
         "SeenFromHeight": known_m("z_min_m", floor_m),
         "SeenToHeight": known_m("z_max_m", floor_m),
         "Points": ("IfcInteger", int(columns["n_points"][row])),
@@ -149,16 +149,18 @@ def _describe_wall(model: IfcModel, storey: StoreyPlan, row: int, wall: entity_i
     }
     model.describe(wall, EVIDENCE, properties)
     if storey.catalogue is not None:
-        model.describe(wall, NOMINAL, _list_changes(storey, row))
+        model.describe(wall, NOMINAL, _list_changes(locale, storey, row))
 
 
-def _list_changes(storey: StoreyPlan, row: int) -> dict[str, tuple[str, str | float | None]]:
+def _list_changes(
+    locale: Locale, storey: StoreyPlan, row: int
+) -> dict[str, tuple[str, str | float | None]]:
     """Return what a wall of a regular plan was, and what it has been changed by."""
     columns = storey.plan.walls
     changed_m = float(columns["thickness_changed_m"][row])
     measured_m = known(columns["thickness_m"][row] - changed_m)
     return {
-        "ThicknessFrom": ("IfcLabel", str(columns["thickness_from"][row])),
+        "ThicknessFrom": ("IfcLabel", locale.say(str(columns["thickness_from"][row]))),
         "MeasuredThickness": (
             "IfcLengthMeasure",
             measured_m if storey.is_thickness_measured[row] else None,
@@ -185,7 +187,7 @@ def _give_types(model: IfcModel, storey: StoreyPlan, walls: list[entity_instance
         own = f"{locale.title('wall')} {locale.size(thickness_m)}"
         name = (listed or own) + assumed
         not_known = locale.title("not known") + assumed
-        material = model.new("IfcMaterial", not_known, None, "not known")
+        material = model.new("IfcMaterial", not_known, None, locale.say("not known"))
         layer = model.new("IfcMaterialLayer", material, thickness_m)
         layers = model.new("IfcMaterialLayerSet", [layer], name)
         predefined = _STANDARD if model.is_editable else "NOTDEFINED"
