@@ -15,10 +15,11 @@ from scanplan.exports.drafting.facades import find_facades
 from scanplan.exports.drafting.presentation import compose_overview, compose_presentation
 from scanplan.exports.drafting.regular_plan import DraftSettings, draft_plan
 from scanplan.exports.sheet.composition import compose_sheet, paper_words
+from scanplan.exports.sheet.lettering import measure_width_mm
 from scanplan.exports.sheet.locale import Locale
 from scanplan.exports.sheet.marks import Word
 from scanplan.exports.sheet.paper import Slot
-from scanplan.exports.sheet.styles import STYLES
+from scanplan.exports.sheet.styles import STYLES, Letters
 from scanplan.exports.sheet.title import draw_room_table
 from scanplan.geometry.arcs import trace_arc
 from scanplan.plan.floorplan import centrelines_m
@@ -329,6 +330,31 @@ def test_names_of_rooms_are_read_before_their_heights_and_perimeters():
     assert {"Perim. m", "Height m", "Hall"} <= words("Hall", "1")
     long = words("Reading room", "A-001-0002-3")
     assert "Height m" not in long and {"A-001-0002-3", "Reading room", "Area m²"} <= long
+
+
+@pytest.mark.parametrize("marks", ["", " *", " * ?"])
+def test_a_mark_cuts_no_name(marks):
+    def words(name):
+        known = {"NUMBER": "1.02", "PERIMETER": "24.10 m", "HEIGHT": "at least 2.50 m"}
+        rooms = [{"NAME": name, "AREA": "4.7 m²"}, {"NAME": "Hall", "AREA": "about 1128.7 m²"}]
+        stamps = [
+            replace(of, facts={**of.facts, **known, **own}, marks=marks)
+            for of, own in zip(composed().stamps, rooms, strict=True)
+        ]
+        drawn = draw_room_table(stamps, [Slot(0.0, 0.0, len(stamps))], Locale())
+        return [word for word in drawn if isinstance(word, Word)]
+
+    # however long it is, it ends before its own area, and is whole if it is not very long
+    for length in range(6, 40):
+        name = "Besprechungsraum im Obergeschoss am Ende"[:length].strip()
+        found = words(name)
+        (shown,) = [word for word in found if word.text.startswith("Bespr")]
+        (area,) = [word for word in found if word.text == "4.7"]
+        end_mm = shown.place[0] + measure_width_mm(shown.text, Letters.SMALL)
+        assert end_mm < area.place[0] - measure_width_mm(area.text, Letters.SMALL)
+        assert shown.text.endswith(marks)
+        if measure_width_mm(name, Letters.SMALL) <= 18.0:
+            assert shown.text == name + marks
 
 
 def test_the_legend_explains_the_sign_for_about_only_where_it_stands():

@@ -258,21 +258,21 @@ def draw_room_table(
     sizes = [_list_sizes(stamp, locale) for stamp in stamps]
     n_sizes = 1 if is_brief else 3 - all(of_room[-1] == _UNSEEN for of_room in sizes)
     numbers = [shorten_text(of.facts["NUMBER"], Letters.SMALL, _LONG_MM) for of in stamps]
-    longest_mm = max((_measure_name(of) for of in stamps), default=0.0)
+    names_mm = [measure_width_mm(of.facts["NAME"], Letters.SMALL) for of in stamps]
+    marks_mm = [measure_width_mm(of.marks, Letters.SMALL) for of in stamps]
 
-    def place_columns(n_shown: int) -> tuple[list[float], float]:
+    def place_columns(n_shown: int) -> tuple[list[float], FloatArray]:
         ends = _end_columns(names[: 2 + n_shown], numbers, [of[:n_shown] for of in sizes])
-        return ends, _name_width_mm(ends, sizes)
+        return ends, _name_widths_mm(ends, sizes) - marks_mm
 
-    ends, name_mm = place_columns(n_sizes)
+    ends, widths_mm = place_columns(n_sizes)
     # names before heights and perimeters
-    while name_mm < min(longest_mm, _LONG_MM) and len(ends) > _FEWEST_COLUMNS:
-        ends, name_mm = place_columns(len(ends) - _FEWEST_COLUMNS)
+    while (widths_mm < np.minimum(names_mm, _LONG_MM)).any() and len(ends) > _FEWEST_COLUMNS:
+        ends, widths_mm = place_columns(len(ends) - _FEWEST_COLUMNS)
     yield from _heads(slots, names[: len(ends)], ends)
-    rooms = zip(stamps, numbers, sizes, _row_places(slots), strict=True)
-    for stamp, number, of_room, (x, y) in rooms:
-        marks_mm = measure_width_mm(stamp.marks, Letters.SMALL)
-        name = shorten_text(stamp.facts["NAME"], Letters.SMALL, name_mm - marks_mm) + stamp.marks
+    rooms = zip(stamps, numbers, widths_mm.tolist(), sizes, _row_places(slots), strict=True)
+    for stamp, number, name_mm, of_room, (x, y) in rooms:
+        name = shorten_text(stamp.facts["NAME"], Letters.SMALL, name_mm) + stamp.marks
         texts = [number, name, *of_room][: len(ends)]
         for column, (text, end) in enumerate(zip(texts, ends, strict=True)):
             kind = "verify" if stamp.verify and column == 1 else "title"
@@ -280,10 +280,6 @@ def draw_room_table(
         yield _rule(
             x + Paper.GAP, y - Paper.ROW / 2, x + Paper.COLUMN - Paper.GAP, y - Paper.ROW / 2
         )
-
-
-def _measure_name(stamp: Stamp) -> float:
-    return measure_width_mm(stamp.facts["NAME"], Letters.SMALL)
 
 
 def _list_sizes(stamp: Stamp, locale: Locale) -> list[str]:
@@ -305,7 +301,7 @@ def _end_columns(
 
     Those of sizes end at the right, each as wide as what stands in it.
     """
-    ends = [Paper.COLUMN - 4.5 * Paper.GAP]
+    ends = [Paper.COLUMN - 2 * Paper.GAP]
     for column in range(len(heads) - 1, 2, -1):
         texts = [heads[column], *(of_room[column - 2] for of_room in sizes)]
         width = max(measure_width_mm(text, Letters.SMALL) for text in texts)
@@ -314,10 +310,10 @@ def _end_columns(
     return [0.0, max(_NUMBER_MM, number_mm + Paper.GAP), *ends]
 
 
-def _name_width_mm(ends: Sequence[float], sizes: Sequence[Sequence[str]]) -> float:
-    """Return how wide a name may be: as far as where the areas begin."""
-    widths = [measure_width_mm(of_room[0], Letters.SMALL) for of_room in sizes]
-    return ends[2] - max(widths, default=0.0) - Paper.GAP - ends[1]
+def _name_widths_mm(ends: Sequence[float], sizes: Sequence[Sequence[str]]) -> FloatArray:
+    """Return how wide the name in each row may be, (r,): as far as where its area begins."""
+    areas_mm = np.array([measure_width_mm(of_room[0], Letters.SMALL) for of_room in sizes])
+    return ends[2] - areas_mm - Paper.GAP - ends[1]
 
 
 def draw_scale_bar(page: Page, slot: Slot, north: North | None = None) -> Iterator[Mark | Word]:
