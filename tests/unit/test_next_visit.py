@@ -15,6 +15,8 @@ from scanplan.exports import visit_geojson
 from scanplan.exports.model_origin import Site
 from scanplan.plan.floorplan import FloorPlan
 from scanplan.rays.tolerances import STRAY_SHARE
+from scanplan.report.facts import VisitFacts
+from scanplan.report.plan_view.next_visit import draw_visit_map
 from scanplan.validation.confidence import NOT_CLOSED, OF_DOUBTFUL_WALLS
 from scanplan.visit import next_visit, questions, sight, standpoints
 from scanplan.visit.sensor_reach import SensorReach
@@ -87,6 +89,24 @@ def test_a_narrow_field_is_turned_towards_what_is_asked():
     heading_rad = np.radians(visit.standpoints["heading_deg"][0])
     toward = np.array([6.0, 1.0]) - [visit.standpoints["x_m"][0], visit.standpoints["y_m"][0]]
     assert np.cos(heading_rad - np.arctan2(*toward[::-1])) > np.cos(np.pi / 4)
+
+
+def test_to_look_another_way_from_one_place_no_way_is_drawn():
+    """A hall too narrow to stand elsewhere, asked at both ends, of which one is seen at a time."""
+    half = SensorReach(range_m=50.0, field_rad=np.pi / 2, height_m=0.4)
+    ends = [((0, 0), (0, 0.8)), ((2, 0.8), (2, 0))]
+    hall = room_plan([(0, 0), (2, 0), (2, 0.8), (0, 0.8)], ends)
+    wide = next_visit.VisitSettings(clearance_m=0.3, spacing_m=5.0)
+    visit = next_visit.plan_visit(hall, np.array([[1.0, 0.4]]), half, wide)
+    x_m, way_m = visit.standpoints["x_m"].tolist(), visit.standpoints["way_m"].tolist()
+    assert x_m[0] == x_m[1] and way_m[1] == 0
+    ways = shapely.from_wkb(visit.standpoints["geometry"])
+    assert (shapely.is_empty(ways) == (visit.standpoints["way_m"] == 0)).all()
+    features = json.loads(visit_geojson.format_visit("hall", visit, ""))["features"]
+    drawn = [f["properties"]["standpoint"] for f in features if f["properties"]["feature"] == "way"]
+    assert drawn == [number for number, m in enumerate(way_m, 1) if m > 0]
+    shown = draw_visit_map(hall, VisitFacts(visit.questions, visit.standpoints, ""))
+    assert shown.count('class="way"') == len(drawn)
 
 
 def test_what_lies_where_nobody_comes_is_said_to_be_out_of_sight():

@@ -29,9 +29,9 @@ def format_visit(
     Returns
     -------
     str
-        Features are, by `feature`: standpoint (Point), way (LineString to a standpoint) and
-        question (MultiLineString), with the columns of their tables, null where not known: these
-        are in the map's frame, which robots drive in.
+        Features are, by `feature`: standpoint (Point), way (LineString to a standpoint, none to
+        one where the sensor stands already) and question (MultiLineString), with the columns of
+        their tables, null where not known: these are in the map's frame, which robots drive in.
     """
     places = np.column_stack([visit.standpoints["x_m"], visit.standpoints["y_m"]])
     of_features = (
@@ -58,4 +58,5 @@ def _features(what: str, columns: Columns, shapes: Array) -> list[Feature]:
             {"feature": what, **{name: columns[name][row] for name in names}},
         )
         for row, shape in enumerate(shapes)
+        if not shape.is_empty
     ]

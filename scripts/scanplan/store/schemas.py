@@ -529,8 +529,9 @@ STANDPOINTS = Schema(
 """Where a second visit is to stand, in visiting order from 1.
 
 `heading_deg` is the direction in the map that the middle of the sensor's field is to look in, NaN
-of one that sees all around; `way_m` how long the way to it is (`geometry`) from the one before, and
-to the first from where the survey began; `n_questions` how many it shows most of.
+of one that sees all around; `way_m` how long the way to it is (`geometry`, empty where it is the
+same place) from the one before, and to the first from where the survey began; `n_questions` how
+many it shows most of.
 """
 CHANGES = Schema(
     "changes",

@@ -58,7 +58,8 @@ class _Stops:
     view : (k,) int64
         Index of each among the views.
     ways_m : list of k (n, 2) float64
-        Corners of the way to each from the one before, to the first from the start.
+        Corners of the way to each from the one before, to the first from the start; none where
+        they are one place.
     """
 
     view: IntArray
@@ -129,7 +130,8 @@ def _order_stops(grid: RoadmapGrid, views: Views, chosen: list[int], start_m: Fl
     ways_m = []
     for before, after in pairwise(order):
         cells = paths.trace(before, after)
-        corners_m = grid.xy_m[[cells[0], *cells]]
+        # to look another way from where it stands a sensor goes none
+        corners_m = grid.xy_m[cells if len(cells) > 1 else cells[:0]]
         straight = overlays.simplify_shapes(shapely.linestrings(corners_m), 0)
         ways_m.append(shapely.get_coordinates(straight))
     return _Stops(np.array([chosen[i - 1] for i in order[1:]], np.int64), ways_m)

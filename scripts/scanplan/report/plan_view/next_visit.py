@@ -98,7 +98,8 @@ def _questions(questions: Columns) -> Iterator[str]:
 
 
 def _ways(standpoints: Columns) -> Iterator[str]:
-    for track in shapely.from_wkb(standpoints["geometry"]):
+    ways = shapely.from_wkb(standpoints["geometry"])
+    for track in ways[~shapely.is_empty(ways)]:
         yield plan_svg.draw_path(shapely.get_coordinates(track)[None], 'class="way"')
 
 
