@@ -189,6 +189,23 @@ def test_a_ply_without_a_header_is_refused(tmp_path):
         scans_of(tmp_path)
 
 
+@pytest.mark.parametrize("n_poses", [2, 3])
+@pytest.mark.parametrize("names", [("1.5.ply", "2.5.pcd"), ("1500000000000000.ply", "2.5.ply")])
+def test_a_cloud_without_a_stamp_beside_others_with_one_is_named(tmp_path, names, n_poses):
+    poses = "".join(f"{t}.5 0 0 0 0 0 0 1\n" for t in range(1, n_poses + 1))
+    files = folder(tmp_path, [*names, "map.ply"], poses)
+    # as many poses as clouds or not: the i-th cloud by its name is not the i-th
+    with refused(file="map.ply", value="2 stamps", remedy="move it"), open_survey(files, Reading()):
+        pass
+
+
+def test_a_name_that_looks_like_a_stamp_among_others_that_do_not_is_chance(tmp_path):
+    poses = "\n".join(f"{t} {t} 0 0 0 0 0 1" for t in (1, 2, 5.5))
+    files = folder(tmp_path, ["s1.pcd", "s2.pcd", "2.5.pcd"], poses)
+    with open_survey(files, Reading(**LIMITS)) as survey:
+        assert survey.stamps().tolist() == [10**9, 2 * 10**9, 5_500_000_000]
+
+
 def test_names_of_more_digits_than_a_stamp_has_are_refused(tmp_path):
     write_ply(tmp_path / f"scans/{'1' * 200}.ply", POINTS)
     with refused(value="no stamp"):

@@ -94,8 +94,14 @@ def _order_clouds(
     paths: Sequence[Path], pose_ns: IntArray, poses_path: Path
 ) -> tuple[list[Path], IntArray]:
     """Return the clouds in scan_id order and their stamps (n,) int64."""
-    stems = [path.stem for path in paths]
-    if all(dataset_entries.is_stamp(stem) for stem in stems):
+    others = [path for path in paths if not dataset_entries.is_stamp(path.stem)]
+    n_stamps = len(paths) - len(others)
+    if others and n_stamps >= len(others):
+        noun = "a stamp" if n_stamps == 1 else f"{n_stamps} stamps"
+        fault = f"its name is no stamp, beside {noun} as names of clouds"
+        raise StageError(f"{others[0]}: {fault}; move it away, or name it by its stamp in seconds")
+    if not others:
+        stems = [path.stem for path in paths]
         stamps = [int(Decimal(s) * 10**9) if "." in s else int(s) for s in stems]
         if not max(stamps) < tum.END_NS:
             longest = max(paths, key=lambda path: len(path.stem))
