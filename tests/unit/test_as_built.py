@@ -40,8 +40,9 @@ from scanplan.exports.changes.compared_sheet import (
     draw_areas,
 )
 from scanplan.exports.sheet.lettering import word_box
-from scanplan.exports.sheet.locale import ENGLISH, Locale
+from scanplan.exports.sheet.locale import ENGLISH, Locale, make_locale
 from scanplan.geometry.lines import Line
+from scanplan.project.words_file import read_words
 from scanplan.store import schemas, tables
 
 LIMITS = Tolerances(
@@ -288,6 +289,7 @@ def test_words_of_the_list_do_not_run_into_each_other():
     assert set(rows[1][1:]) <= set(texts) and "window a113/b210" not in texts
 
 
+@pytest.mark.wording
 def test_models_state_the_gravest_of_an_element_and_topics_what_differs():
     moved = (INNER[0] + 0.1, 0, INNER[2] + 0.1, 5)
     drawn = storey(inner=[INNER, STILL], doors=[])
@@ -297,7 +299,9 @@ def test_models_state_the_gravest_of_an_element_and_topics_what_differs():
     assert facts["inner 0"]["verdict"] == DEVIATES and facts["inner 0"]["differs"] is True
     assert facts["inner 0"]["deviation_m"] == pytest.approx(-0.1, abs=0.005)
     assert facts["inner 0"]["tolerance_m"] == 0.016 and facts["outer 0"]["verdict"] == WITHIN
-    topics = model_facts.list_topics(columns, 3.0)
-    (wall,) = topics
+    (wall,) = model_facts.list_topics(columns, 3.0)
+    (german,) = model_facts.list_topics(columns, 3.0, make_locale("m", read_words("de")))
+    assert (german.key, german.guid, german.kind) == (wall.key, wall.guid, wall.kind)
+    assert "weicht ab um -10" in german.title and "Toleranz 16 mm." in german.text
     assert wall.guid == "inner 0" and wall.kind == "deviates"
     assert wall.place_m == pytest.approx((5.0, 2.5, 3.0), abs=0.1) and "-10" in wall.title

@@ -1,6 +1,7 @@
 """Doubts as topics: who reads them finds the element, the place and the question."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import bcf.v2.bcfxml
@@ -10,7 +11,10 @@ import pytest
 from helpers import floorplan_making
 from scanplan.exports.data import doubt_topics, element_ids
 from scanplan.exports.model_origin import ModelOrigin
-from scanplan.validation.doubts import list_doubts
+from scanplan.exports.sheet.locale import ENGLISH, make_locale
+from scanplan.project.words_file import read_words
+from scanplan.validation.doubt_words import list_phrases
+from scanplan.validation.doubts import OF_WALL, list_doubts
 
 ORIGIN = ModelOrigin(author="A. Uthor", t_ns=1_700_000_000 * 10**9)
 
@@ -99,3 +103,47 @@ def test_a_plan_without_doubts_has_no_topics(tmp_path):
     sure = floorplan_making.plan(walls=walls)
     found = read(doubt_topics.format_bcf(sure, element_ids.ids_from_places(sure), ORIGIN), tmp_path)
     assert found is not None and found.topics == {}
+
+
+@pytest.mark.wording
+@pytest.mark.parametrize("language", ["de", "fr", "es"])
+def test_topics_are_in_the_language_but_for_names_of_rooms(doubted, language):
+    doubted.rooms["name"][1] = "wall"  # a name is none of our words
+    openings = {
+        "verify": np.array([False, True, False]),
+        "about": np.array(["", "kind", ""], object),
+    }
+    openings["doubt"] = np.array(["", "may be open in part, bounds no room", ""], object)
+    plan = replace(doubted, openings=doubted.openings | openings)
+
+    def words(locale):
+        found = list_doubts(plan, locale)
+        return [(of.name, of.reason, of.question) for of in found]
+
+    english, other = words(ENGLISH), words(make_locale("m", read_words(language)))
+    assert len(english) == len(other) >= 4
+    for one, two in zip(english, other, strict=True):
+        assert one[1] != two[1] and one[2] != two[2]
+        assert (one[0] == two[0]) == (one[0] == "wall")
+    assert any("wall" in question for _, _, question in other)
+    if language == "de":
+        reason = "vielleicht zum Teil offen, begrenzt keinen Raum"
+        question = "Ist es das: Tür rechts in Room 0, 0,9 m breit gezeichnet?"
+        assert ("Tür 1", reason, question) in other
+
+
+def test_a_file_of_topics_is_in_the_language(doubted, tmp_path):
+    german = make_locale("m", read_words("de"))
+    origin = ModelOrigin(locale=german)
+    ids = element_ids.ids_from_places(doubted)
+    found = read(doubt_topics.format_bcf(doubted, ids, origin), tmp_path)
+    topics = [handler.topic for handler in found.topics.values()]
+    doubts = list_doubts(doubted, german)
+    assert {t.title for t in topics} == {f"{d.name}: {d.reason}" for d in doubts}
+    assert {t.description for t in topics} == {d.question for d in doubts}
+    assert {"Wand", "Wandseite", "Raum"} & {label for t in topics for label in t.labels}
+
+
+@pytest.mark.parametrize("language", ["de", "fr", "es"])
+def test_whatever_may_be_asked_has_words(language):
+    assert set(list_phrases()) | {OF_WALL, "face"} <= set(read_words(language)["phrases"])

@@ -50,6 +50,7 @@ if any(found.designs for found in DATASETS.values()):
             runtime=grown(runtime=10),
         params:
             code=code_of("annotate_design"),
+            words=words_of_dataset,
         script:
             "../../scripts/annotate_design.py"
 

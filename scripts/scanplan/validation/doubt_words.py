@@ -1,5 +1,8 @@
 """What is doubtful of a plan as questions, to a person who stands there with the drawing."""
 
+import re
+from typing import Protocol
+
 import numpy as np
 
 from scanplan.plan.floorplan import OPENINGS, FloorPlan
@@ -8,6 +11,8 @@ from scanplan.types import FloatArray
 NEARLY = "nearly"
 """What is asked of something that is not drawn."""
 _SIDES = ("right", "top", "left", "bottom")
+_SIDE, _OUTSIDE, _DRAWN = "at the {} of {}", "outside the known rooms", " as drawn"
+_NAMED = re.compile(r"\{(\w+)\}")  # places of questions
 _NOUNS = OPENINGS | {"face": "side of a wall"}
 # a question by what it is of, and what of that is doubtful; of others by the latter alone
 _QUESTIONS = {
@@ -28,7 +33,54 @@ _OTHERS = {
 }
 
 
-def ask(noun: str, about: str, size_m: float, where: str) -> str:
+class Wording(Protocol):
+    """How English words are said to a reader, as `locale.Locale` does."""
+
+    def say(self, text: str) -> str:
+        """Return a text in the reader's language."""
+        ...
+
+    def title(self, text: str) -> str:
+        """Return it likewise, with a capital at its beginning."""
+        ...
+
+    def fill(self, phrase: str, *words: str) -> str:
+        """Return a phrase likewise, its places `{}` filled with words as they are."""
+        ...
+
+    def measure(self, length_m: float, decimals: int = 2) -> str:
+        """Return a length with its unit."""
+        ...
+
+
+class _English:
+    def say(self, text: str) -> str:
+        return text
+
+    def title(self, text: str) -> str:
+        return text[:1].upper() + text[1:]
+
+    def fill(self, phrase: str, *words: str) -> str:
+        return phrase.format(*words)
+
+    def measure(self, length_m: float, decimals: int = 2) -> str:
+        return f"{length_m:.{decimals}f} m"
+
+
+PLAIN: Wording = _English()
+"""As the report has it: English, in metres."""
+
+
+def list_phrases() -> list[str]:
+    """Return what questions are made of, as `Wording.fill` takes it."""
+    nouns = {*_NOUNS.values(), "wall"}
+    sizes = [f", {{}} {far}{drawn}" for far in ("wide", "long") for drawn in ("", _DRAWN)]
+    sides = [_SIDE.format(side, "{}") for side in _SIDES]
+    asked = [_NAMED.sub("{}", words) for words in (*_QUESTIONS.values(), *_OTHERS.values())]
+    return [*sorted(nouns), *sizes, _OUTSIDE, *sides, *asked]
+
+
+def ask(noun: str, about: str, size_m: float, where: str, wording: Wording = PLAIN) -> str:
     """Return a question.
 
     Parameters
@@ -43,13 +95,19 @@ def ask(noun: str, about: str, size_m: float, where: str) -> str:
         As `say_where` returns it.
     """
     words = _QUESTIONS.get((noun, about), _OTHERS.get(about, _OTHERS[""]))
-    measured = "wide" if noun in OPENINGS else "long"
-    drawn = "" if about == NEARLY else " as drawn"
-    size = "" if np.isnan(size_m) else f", {size_m:.1f} m {measured}{drawn}"
-    return words.format(noun=_NOUNS.get(noun, noun), where=where, size=size)
+    far = "wide" if noun in OPENINGS else "long"
+    size = f", {{}} {far}{'' if about == NEARLY else _DRAWN}"
+    known = {
+        "noun": wording.say(_NOUNS.get(noun, noun)),
+        "where": where,
+        "size": "" if np.isnan(size_m) else wording.fill(size, wording.measure(size_m, 1)),
+    }
+    return wording.fill(_NAMED.sub("{}", words), *(known[name] for name in _NAMED.findall(words)))
 
 
-def say_where(plan: FloorPlan, room: int, place_m: FloatArray | None) -> str:
+def say_where(
+    plan: FloorPlan, room: int, place_m: FloatArray | None, wording: Wording = PLAIN
+) -> str:
     """Return where a place (2,) is, as the map lies, in words.
 
     Parameters
@@ -60,11 +118,11 @@ def say_where(plan: FloorPlan, room: int, place_m: FloatArray | None) -> str:
         None stands for the room itself.
     """
     if room < 0:
-        return "outside the known rooms"
+        return wording.say(_OUTSIDE)
     name = plan.room_labels[room]
     if place_m is None:
         return name
     middle_m = np.array([plan.rooms["x_m"][room], plan.rooms["y_m"][room]])
     x_m, y_m = place_m - middle_m
     quarter = round(float(np.arctan2(y_m, x_m)) / (np.pi / 2))
-    return f"at the {_SIDES[quarter % 4]} of {name}"
+    return wording.fill(_SIDE.format(_SIDES[quarter % 4], "{}"), name)

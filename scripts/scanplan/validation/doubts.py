@@ -11,8 +11,10 @@ from scanplan.plan.floorplan_files import UNRATED
 from scanplan.types import BoolArray, Columns, FloatArray, IntArray
 from scanplan.validation import doubt_words
 from scanplan.validation.confidence import END, EXISTENCE, KIND, NOT_CLOSED, PLACE, WIDTH
-from scanplan.validation.doubt_words import NEARLY
+from scanplan.validation.doubt_words import NEARLY, PLAIN, Wording
 
+OF_WALL = "Face {} of wall {}"
+"""What a side of a wall is called, which has a number of its own."""
 NO_RAYS = "no rays were recorded"
 """Why elements of some plans are not rated."""
 MOST = 20
@@ -76,7 +78,7 @@ class Doubt:
         return self.about in _PARTS
 
 
-def list_doubts(plan: FloorPlan) -> list[Doubt]:
+def list_doubts(plan: FloorPlan, wording: Wording = PLAIN) -> list[Doubt]:
     """List what is doubtful, that first of which an error is expected to cost most.
 
     A face of a wall that is to be verified is not listed.
@@ -85,19 +87,17 @@ def list_doubts(plan: FloorPlan) -> list[Doubt]:
     ----------
     plan : floorplan.FloorPlan
         The columns of `schemas.CONFIDENCE` are taken where its tables have them.
+    wording : Wording
+        Of names, reasons and questions.
     """
-    kinds = plan.openings["type"].tolist()
-    numbered = zip(kinds, plan.openings["opening"].tolist(), strict=True)
     rows = find_doubtful_faces(plan)
     faces = {name: values[rows] for name, values in plan.faces.items()}
-    sides = zip(faces["face"].tolist(), faces["wall"].tolist(), strict=True)
+    tables = {"opening": plan.openings, "wall": plan.walls, "room": plan.rooms, "face": faces}
     found = [
-        *_doubts_of(plan, "opening", plan.openings, [f"{k} {n}".capitalize() for k, n in numbered]),
-        *_doubts_of(plan, "wall", plan.walls, [f"Wall {n}" for n in plan.walls["wall"].tolist()]),
-        *_doubts_of(plan, "room", plan.rooms, plan.room_labels),
-        *_doubts_of(plan, "face", faces, [f"Face {n} of wall {w}" if w >= 0 else f"Face {n}"
-                                          for n, w in sides]),
-    ]  # fmt: skip
+        doubt
+        for kind, columns in tables.items()
+        for doubt in _doubts_of(plan, kind, columns, wording)
+    ]
     return sorted(found, key=lambda doubt: -doubt.cost)
 
 
@@ -202,9 +202,7 @@ def find_doubtful_faces(plan: FloorPlan) -> IntArray:
     return np.flatnonzero(is_doubtful & ~np.isin(faces["wall"], judged))
 
 
-def _doubts_of(
-    plan: FloorPlan, kind: str, columns: Columns, names: Sequence[str]
-) -> Iterator[Doubt]:
+def _doubts_of(plan: FloorPlan, kind: str, columns: Columns, wording: Wording) -> Iterator[Doubt]:
     numbers = columns[kind].tolist()
     p_true = np.nan_to_num(columns.get("p_true", np.zeros(len(numbers))), nan=0.0)
     for row, number in enumerate(numbers):
@@ -219,19 +217,30 @@ def _doubts_of(
         yield Doubt(
             kind=kind,
             number=number,
-            name=names[row],
-            reason=reason,
+            name=_name_element(plan, kind, columns, row, wording),
+            reason=wording.say(reason),
             about=about,
             question=doubt_words.ask(
                 noun,
                 about,
                 _measure_m(kind, columns, row),
-                doubt_words.say_where(plan, at, None if kind == "room" else place_m),
+                doubt_words.say_where(plan, at, None if kind == "room" else place_m, wording),
+                wording,
             ),
             room=plan.room_labels[at] if at >= 0 else "",
             place_m=place_m,
             cost=_PART_COST if about in _PARTS else cost,
         )
+
+
+def _name_element(plan: FloorPlan, kind: str, columns: Columns, row: int, wording: Wording) -> str:
+    """Return what an element is called: of rooms the name that somebody gave, or its number."""
+    if kind == "room":
+        return str(plan.room_labels[row])
+    number = columns[kind][row]
+    if kind == "face" and columns["wall"][row] >= 0:
+        return wording.fill(OF_WALL, str(number), str(columns["wall"][row]))
+    return f"{wording.title(columns['type'][row] if kind == 'opening' else kind)} {number}"
 
 
 def _find_place_m(kind: str, columns: Columns, row: int, about: str) -> FloatArray:

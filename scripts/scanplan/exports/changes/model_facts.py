@@ -10,10 +10,12 @@ from scanplan.changes.verdicts import CHANGES, NOT_SEEN, SAME, STATES
 from scanplan.design.deviations import FAULTS, UNDECIDED, WITHIN
 from scanplan.exports.changes.annotated_ifc import Properties
 from scanplan.exports.data.model_topics import Topic
+from scanplan.exports.sheet.locale import ENGLISH, Locale
 from scanplan.types import Array, Columns
 
 _GRAVEST = (*FAULTS, UNDECIDED, WITHIN, *CHANGES, *STATES, SAME, NOT_SEEN)
 """Of an element with several stretches the gravest verdict is stated, and the longest of it."""
+_OF_SURVEY = "{} {} of the survey"
 _OF_DESIGN = {"p": "probability", "shift_m": "deviation_m", "sigma_m": "standard_deviation_m"}
 _OF_DESIGN |= {"limit_m": "tolerance_m", "built_m2": "built_area"}
 _OF_DESIGN |= {"kind_built": "kind_built", "doubt": "doubt"}
@@ -118,8 +120,8 @@ def _size(columns: Columns, row: int) -> float:
     return float(np.nan_to_num(columns["length_m"][row]) + np.nan_to_num(columns["area_m2"][row]))
 
 
-def list_topics(columns: Columns, floor_m: float) -> list[Topic]:
-    """Return what somebody has to look into: what likely differs.
+def list_topics(columns: Columns, floor_m: float, locale: Locale = ENGLISH) -> list[Topic]:
+    """Return what somebody has to look into, in a language: what likely differs.
 
     Parameters
     ----------
@@ -128,39 +130,43 @@ def list_topics(columns: Columns, floor_m: float) -> list[Topic]:
     floor_m : float
         Height of the storey in the design.
     """
-    return list(_list_topics(columns, floor_m))
+    return list(_list_topics(columns, floor_m, locale))
 
 
-def _list_topics(columns: Columns, floor_m: float) -> Iterator[Topic]:
+def _list_topics(columns: Columns, floor_m: float, locale: Locale) -> Iterator[Topic]:
     shapes = shapely.from_wkb(np.asarray(columns["geometry"], object))
     for row in np.flatnonzero(columns["fault"]).tolist():
         of = {name: values[row] for name, values in columns.items()}
         x_m, y_m = shapely.get_coordinates(shapes[row].centroid)[0].tolist()
-        name = of["name"] or f"{of['element']} {of['number_built']} of the survey"
+        number = str(of["number_built"])
+        name = of["name"] or locale.fill(_OF_SURVEY, locale.say(of["element"]), number)
         verdict = of["verdict"].replace("_", " ")
         yield Topic(
-            f"{name}/{verdict}",
-            f"{name}: {verdict}{_by_words(of)}",
-            _explain(of),
+            f"{of['name'] or _OF_SURVEY.format(of['element'], number)}/{verdict}",
+            f"{name}: {locale.say(verdict)}{_by_words(of, locale)}",
+            _explain(of, locale),
             verdict,
             of["guid"],
             (x_m, y_m, floor_m),
         )
 
 
-def _by_words(of: Mapping[str, float]) -> str:
-    return f" by {100 * of['shift_m']:+.1f} cm" if math.isfinite(of["shift_m"]) else ""
+def _by_words(of: Mapping[str, float], locale: Locale) -> str:
+    if not math.isfinite(of["shift_m"]):
+        return ""
+    return locale.fill(" by {} cm", locale.say(f"{100 * of['shift_m']:+.1f}"))
 
 
-def _explain(of: Mapping[str, float | str]) -> str:
+def _explain(of: Mapping[str, float | str], locale: Locale) -> str:
     """Return in words how sure a deviation is, and what is allowed."""
-    words = [f"Probability {of['p']:.2f}."]
+    words = [locale.fill("Probability {}.", locale.say(f"{of['p']:.2f}"))]
     if math.isfinite(float(of["sigma_m"])):
-        words.append(f"Standard deviation {1000 * float(of['sigma_m']):.0f} mm.")
+        words.append(locale.fill("Standard deviation {}.", locale.deviation(float(of["sigma_m"]))))
     if math.isfinite(float(of["limit_m"])):
-        words.append(f"Tolerance {1000 * float(of['limit_m']):.0f} mm.")
+        words.append(locale.fill("Tolerance {}.", locale.deviation(float(of["limit_m"]))))
     if of["kind_design"] and of["kind_built"]:
-        words.append(f"Designed as {of['kind_design']}, built as {of['kind_built']}.")
+        kinds = (locale.say(str(of[kind])) for kind in ("kind_design", "kind_built"))
+        words.append(locale.fill("Designed as {}, built as {}.", *kinds))
     if math.isfinite(float(of["built_m2"])):
-        words.append(f"Built with {of['built_m2']:.2f} m².")
+        words.append(locale.fill("Built with {} m².", locale.say(f"{of['built_m2']:.2f}")))
     return " ".join(words)

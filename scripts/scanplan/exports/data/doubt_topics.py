@@ -17,7 +17,7 @@ def format_bcf(
     origin: ModelOrigin,
     models: Mapping[str, str] | None = None,
 ) -> bytes:
-    """Return the doubts about a plan as a BCF file, that first which costs most.
+    """Return the doubts about a plan as a BCF file in a language, that first which costs most.
 
     A topic each, with the question to ask on site and a view from above, cut at the height of a
     plan, in which its element is selected. The same for the same plan, ids, origin and models.
@@ -29,8 +29,9 @@ def format_bcf(
         and selects none where no model has it; without models it names no file.
     """
     floor_m, _ = plan.storey_m
+    locale = origin.locale
     topics = []
-    for doubt in list_doubts(plan):
+    for doubt in list_doubts(plan, locale):
         model, guid = _find_model(_find_id(plan, ids, doubt) or "", models or {})
         topics.append(
             Topic(
@@ -40,7 +41,7 @@ def format_bcf(
                 kind="Inquiry",
                 guid=guid,
                 place_m=(float(doubt.place_m[0]), float(doubt.place_m[1]), floor_m + _CUT_M),
-                labels=[label for label in (doubt.kind, doubt.room) if label],
+                labels=[label for label in (locale.say(doubt.kind), doubt.room) if label],
                 is_cut=True,
                 model=model,
             )

@@ -145,6 +145,15 @@ class Locale:
                 return separator.join(said)
         return self._write(text)
 
+    def fill(self, phrase: str, *words: str) -> str:
+        """Return an English phrase in the language, its places `{}` filled with words as they are.
+
+        >>> Locale(phrases={"at {} of {}": "{2}: {1}"}).fill("at {} of {}", "no", "Room 1")
+        'Room 1: no'
+        """
+        said = self.phrases.get(phrase, phrase)
+        return re.sub(r"\{(\d)\}", lambda at: f"{{{int(at[1]) - 1}}}", said).format(*words)
+
     def title(self, text: str) -> str:
         """Return an English text in the language, with a capital at its beginning.
 
