@@ -2,6 +2,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from scanplan.geometry import se3
 from scanplan.recordings import clouds
@@ -72,6 +73,21 @@ def test_points_are_taken_to_be_seen_in_the_middle_of_their_sweep():
 def test_a_way_without_turns_tells_nothing():
     straight = room_survey(poses_at(STAMPS_NS, turn_rad=0.0))
     assert pose_delay.find_delay_s(straight, delayed(0.5, turn_rad=0.0), "poses") == 0
+
+
+def test_pairs_are_looked_at_until_they_are_too_far_apart_in_all():
+    """Each of four pairs is 0.2 m apart."""
+    points_m = np.array([[0.0, 0.0], [3.0, 0.0]])
+    source_m = np.array([[0.0, 0.2, 0.0]])
+    pair = pose_delay._Pair(KDTree(points_m), source_m, np.array([T_NS, T_NS]))
+
+    def still(at_ns):
+        return np.tile(np.eye(4), (len(at_ns), 1, 1))
+
+    whole_m = pose_delay._measure_apart([pair] * 4, still, 0.0, np.inf)
+    assert whole_m == pytest.approx([0.2] * 4)
+    part_m = pose_delay._measure_apart([pair] * 4, still, 0.0, 0.09)
+    assert part_m == pytest.approx([0.2, 0.2, pose_delay._FAR_M, pose_delay._FAR_M])
 
 
 def test_where_no_reading_fits_none_is_taken():

@@ -87,18 +87,37 @@ def choose_delay_s(pairs: Sequence[_Pair], poses_at: PosesAt) -> float:
     """Return the delay by which points of pairs lie nearest to one another; 0 of none clearly."""
     n_steps = round(MOST_S / _STEP_S) + 1  # beyond it: at the very end there is no least
     coarse_s = _STEP_S * np.arange(-n_steps, n_steps + 1)
-    apart_m = {delay_s: _measure_apart(pairs, poses_at, delay_s) for delay_s in coarse_s.tolist()}
-    best_s = min(apart_m, key=lambda delay_s: float(apart_m[delay_s].mean()))
+    as_stated_m = _measure_apart(pairs, poses_at, 0.0, np.inf)
+    stated = 0.0, as_stated_m
+    best_s, best_m = _find_nearest(pairs, poses_at, coarse_s, stated, np.inf)
     if abs(best_s) > MOST_S:
         return 0.0
-    n_fine = round(_STEP_S / _FINE_S)
-    for delay_s in (best_s + _FINE_S * np.arange(-n_fine, n_fine + 1)).tolist():
-        apart_m[delay_s] = _measure_apart(pairs, poses_at, delay_s)
-    best_s = min(apart_m, key=lambda delay_s: float(apart_m[delay_s].mean()))
-    found_m, as_stated_m = apart_m[best_s], apart_m[0.0]
     most_m = min(_MEET_M, _CLEARLY * float(as_stated_m.mean()))
+    n_fine = round(_STEP_S / _FINE_S)
+    # up to the coarse ones beside it
+    fine_s = best_s + _FINE_S * np.arange(1 - n_fine, n_fine)
+    best_s, found_m = _find_nearest(pairs, poses_at, fine_s, (best_s, best_m), most_m)
     is_clear = found_m.mean() < most_m and (found_m < as_stated_m).mean() >= _USUAL
     return best_s if is_clear and abs(best_s) >= LEAST_S else 0.0
+
+
+def _find_nearest(
+    pairs: Sequence[_Pair],
+    poses_at: PosesAt,
+    delays_s: FloatArray,
+    known: tuple[float, FloatArray],
+    most_m: float,
+) -> tuple[float, FloatArray]:
+    """Return a delay that leaves points less than `most_m` apart, and less than a known one does.
+
+    The least apart of all, and how far (pairs,): what is known where there is none.
+    """
+    for delay_s in delays_s.tolist():
+        most_m = min(most_m, float(known[1].mean()))
+        apart_m = _measure_apart(pairs, poses_at, delay_s, most_m)
+        if apart_m.mean() < most_m:
+            known = delay_s, apart_m
+    return known
 
 
 def _choose_pairs(poses_at: PosesAt, t_ns: IntArray) -> IntArray:
@@ -142,8 +161,13 @@ def _make_pair(one: Scan, other: Scan, *, planar: bool) -> _Pair:
     return _Pair(KDTree(target_m), scan_pairs.thin_points(other.xyz_m), at_ns)
 
 
-def _measure_apart(pairs: Sequence[_Pair], poses_at: PosesAt, delay_s: float) -> FloatArray:
-    """Return how far points of one scan lie from those of the other on average: (pairs,)."""
+def _measure_apart(
+    pairs: Sequence[_Pair], poses_at: PosesAt, delay_s: float, most_m: float
+) -> FloatArray:
+    """Return how far points of one scan lie from those of the other on average: (pairs,).
+
+    Once it is clear that they lie more than `most_m` apart, other pairs are not looked at.
+    """
     at_ns = np.concatenate([pair.at_ns for pair in pairs]) + round(delay_s * 1e9)
     poses = poses_at(at_ns)
     moved = se3.invert_pose(poses[::2]) @ poses[1::2]
@@ -154,4 +178,6 @@ def _measure_apart(pairs: Sequence[_Pair], poses_at: PosesAt, delay_s: float) ->
         moved_m = se3.transform_points(moved[i], pair.source_m)[:, : pair.target.m]
         found_m, _ = pair.target.query(moved_m, distance_upper_bound=_FAR_M)
         apart_m[i] = np.minimum(found_m, _FAR_M).mean()
+        if apart_m[: i + 1].sum() > most_m * len(pairs):
+            break
     return apart_m
