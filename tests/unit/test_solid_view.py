@@ -94,6 +94,16 @@ def test_what_is_too_much_for_a_page_is_thinned_until_it_fits(monkeypatch):
     assert counts.min() > 0.2 * view["points"]["n"]
 
 
+def test_all_effort_is_made_for_what_may_fit_alone():
+    content = np.random.default_rng(1).integers(0, 8, 9_000, np.uint8).tobytes()
+    whole = solid_view._pack(content)
+    assert solid_view._pack_within(content, len(whole)) == whole
+    # what one more of its letters would fit into is still packed well
+    assert solid_view._pack_within(content, len(whole) - 1) == whole
+    hasty = solid_view._pack_within(content, len(whole) // 2)
+    assert len(hasty) > len(whole) // 2 and hasty != whole
+
+
 def test_many_scans_are_thinned_while_they_are_read(monkeypatch):
     monkeypatch.setattr(solid_view, "_MOST_KEPT", 500)
     points = np.random.default_rng(2).uniform([0, 0, 0], [7, 3, 2], (40, 100, 3))

@@ -150,10 +150,17 @@ def _pack_points(
     read: tuple[IntArray, int, float], step_m: float, most_letters: int
 ) -> dict[str, Any]:
     steps, n_all, cube_m = read
-    while len(data := _pack(_difference(steps))) > most_letters:
+    while len(data := _pack_within(_difference(steps), most_letters)) > most_letters:
         cube_m *= _COARSER
         steps = _thin(steps, cube_m / step_m)
     return {"step_m": step_m, "n": len(steps), "n_all": n_all, "data": data}
+
+
+def _pack_within(content: bytes, most_letters: int) -> str:
+    """Return packed content, or far more of it than the most letters in a part of the time."""
+    hasty = gzip.compress(content, 1)
+    # letters are a third more than bytes: more effort does not save as much as that
+    return base64.b64encode(hasty).decode() if len(hasty) > most_letters else _pack(content)
 
 
 def _difference(steps: IntArray) -> bytes:
