@@ -71,6 +71,15 @@ def test_true_ranges_have_none():
     assert error_m == pytest.approx(0, abs=0.0015)
 
 
+def test_ranges_are_shortened_in_place_where_that_is_asked_for():
+    found, error_m = looked(ERRORS_M), np.full(181, 0.01)
+    apart = range_bias.remove_range_bias(found, error_m, PLUMB)
+    assert not np.array_equal(apart.xyz_m, found.xyz_m)
+    within = range_bias.remove_range_bias(found, error_m, PLUMB, in_place=True)
+    assert within.xyz_m is found.xyz_m
+    assert np.array_equal(within.xyz_m, apart.xyz_m)
+
+
 def test_ranges_are_shortened_by_it():
     found = wrong()
     error_m = np.zeros(181)

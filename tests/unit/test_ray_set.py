@@ -44,6 +44,12 @@ def test_heights_are_counted_from_the_floor_or_from_a_metre_below_a_plane():
     assert flat.ground_z_m == -1.5 and np.isnan(flat.floor_z_m)
 
 
+def test_a_floor_that_is_known_is_not_looked_for():
+    floor = [(x_m, 1, -0.5) for x_m in range(50)]
+    found = gather_rays([(0, floor)], {0: np.zeros(3)}, planar=False, floor_z_m=-0.7)
+    assert found.ground_z_m == -0.7
+
+
 def test_a_sensor_that_looks_upward_has_its_floor_below_the_ceiling_it_sees():
     """From 1 m it sees a table's top at 0.7 m, walls 4 m away, and the ceiling at 2.6 m."""
     at = np.linspace(-0.5, 0.5, 100)

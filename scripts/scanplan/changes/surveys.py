@@ -146,8 +146,8 @@ def read_rays(
 
     sensors_m = moved_m(registered.map_from_sensor[rows, :3, 3])
     places_m = dict(zip(scan_ids.tolist(), sensors_m, strict=True))
-    rays = gather_rays(thinned(), places_m, planar=planar)
-    return replace(rays, floor_z_m=np.nan if planar else 0.0)
+    floor_z_m = np.nan if planar else 0.0
+    return gather_rays(thinned(), places_m, planar=planar, floor_z_m=floor_z_m)
 
 
 def _thin(values: IntArray, most: int) -> IntArray:

@@ -133,12 +133,13 @@ class OtherScans:
         Returns the floor that all planar ones saw: rooms are made of it. By default it is what the
         chosen ones saw.
     find_rays : callable, optional
-        Returns rays from all along the way, and the axes of their sensors, see
-        `fronts.gather_dense_rays`: panes are found by them. By default they are the chosen ones'.
+        Returns rays from all along the way, above a floor `floor_z_m`, and the axes of their
+        sensors, see `fronts.gather_dense_rays`: panes are found by them. By default they are the
+        chosen ones'.
     """
 
     find_floor: Callable[[], BaseGeometry] | None = None
-    find_rays: Callable[[], tuple[RaySet, FloatArray]] | None = None
+    find_rays: Callable[..., tuple[RaySet, FloatArray]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -240,9 +241,9 @@ def make_plan(
     def find_dense() -> RaySet:
         if others.find_rays is None:
             return rays
-        dense, up = others.find_rays()
-        dense = range_bias.remove_range_bias(dense, errors_m, up, threads)
-        return replace(dense, floor_z_m=rays.floor_z_m).with_up(up)
+        dense, up = others.find_rays(floor_z_m=rays.floor_z_m)
+        dense = range_bias.remove_range_bias(dense, errors_m, up, threads, in_place=True)
+        return dense.with_up(up)
 
     survey = _Survey(
         settings, rays, find_dense, track_m, find_free, others.find_floor, designed, threads

@@ -57,9 +57,11 @@ def settle_floor_z(rays: RaySet, segments: Mapping[str, Array], track_m: FloatAr
 
 def _looks_down(rays: RaySet) -> bool:
     """Return whether returns come from below: whoever looks down in a room sees its floor."""
-    way_m = rays.xyz_m - np.repeat(rays.sensors_m, np.diff(rays.first), axis=0)
-    is_below = way_m[:, 2] < -_DOWN * np.hypot(way_m[:, 0], way_m[:, 1])
-    return bool(is_below.sum() > _DOWN_SHARE * len(is_below))
+    n_below = sum(
+        np.count_nonzero(way_m[:, 2] < -_DOWN * np.hypot(way_m[:, 0], way_m[:, 1]))
+        for _, way_m in rays.headings()
+    )
+    return bool(n_below > _DOWN_SHARE * len(rays.xyz_m))
 
 
 def _find_lintels(

@@ -168,12 +168,15 @@ def measure_common_bias(
 
 
 def remove_range_bias(
-    rays: RaySet, error_m: FloatArray, up: FloatArray, threads: int = 1
+    rays: RaySet, error_m: FloatArray, up: FloatArray, threads: int = 1, *, in_place: bool = False
 ) -> RaySet:
-    """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it."""
+    """Return rays with ranges shorter by `error_m` (181,), as `estimate_range_bias` returns it.
+
+    Those given are overwritten `in_place`.
+    """
     if not error_m.any():
         return rays
-    moved = np.empty_like(rays.xyz_m)
+    moved = rays.xyz_m if in_place else np.empty_like(rays.xyz_m)
 
     def move_scan(scan: tuple[slice, FloatArray, FloatArray]) -> None:
         rows, sensor_m, axis = scan

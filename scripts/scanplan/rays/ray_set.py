@@ -241,6 +241,7 @@ def gather_rays(
     *,
     planar: bool,
     left_out: Mapping[int, BoolArray] | None = None,
+    floor_z_m: float | None = None,
     threads: int = 1,
 ) -> RaySet:
     """Sort the points of scans by azimuth.
@@ -253,6 +254,8 @@ def gather_rays(
         Sensor's position by `scan_id`.
     left_out : dict of int to (72,) bool, optional
         Sectors of azimuth in which a scan's points are not all given, see `RaySet`.
+    floor_z_m : float, optional
+        Height of the floor, where it is known: it is not looked for then.
     threads : int
         Cores to use.
 
@@ -264,10 +267,11 @@ def gather_rays(
 
     def sort_scan(scan: tuple[int, FloatArray]) -> tuple[int, FloatArray, FloatArray]:
         scan_id, scan_xyz_m = scan
-        xyz_m = np.asarray(scan_xyz_m, float)
+        # those of 32 bits stay so until all are gathered
+        xyz_m = np.asarray(scan_xyz_m)
         if not np.isfinite(xyz_m).all():
             xyz_m = xyz_m[np.isfinite(xyz_m).all(axis=1)]
-        to_points_m = xyz_m[:, :2] - sensors_m[scan_id][:2]
+        to_points_m = np.subtract(xyz_m[:, :2], sensors_m[scan_id][:2], dtype=float)
         azimuth_rad = np.arctan2(to_points_m[:, 1], to_points_m[:, 0])
         order = _argsort_stably(azimuth_rad)
         return scan_id, azimuth_rad[order], xyz_m.take(order, axis=0)
@@ -284,28 +288,29 @@ def gather_rays(
         at_m[:, 2] = np.median(xyz_m[:, 2])
     of_scan = left_out or {}
     whole = np.zeros(azimuth_sectors.N_SECTORS, bool)
-    return RaySet(
+    rays = RaySet(
         scan_ids=np.array(scan_ids, np.int64),
         sensors_m=at_m,
         first=first,
         azimuth_rad=azimuth_rad,
         xyz_m=xyz_m,
-        floor_z_m=np.nan
-        if planar
-        else levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(xyz_m, scan_ids, first, sensors_m)),
+        floor_z_m=np.nan if floor_z_m is None else floor_z_m,
         planar=bool(planar),
         up=np.tile((0.0, 0.0, 1.0), (len(scan_ids), 1)),
         left_out=np.array([of_scan.get(i, whole) for i in scan_ids], bool).reshape(-1, len(whole)),
     )
+    if planar or floor_z_m is not None:
+        return rays
+    return replace(rays, floor_z_m=levels.place_floor_z(xyz_m[:, 2], _steep_heights_m(rays)))
 
 
-def _steep_heights_m(
-    xyz_m: FloatArray, scan_ids: Iterable[int], first: IntArray, sensors_m: Mapping[int, FloatArray]
-) -> FloatArray:
+def _steep_heights_m(rays: RaySet) -> FloatArray:
     """Return the heights (k,) of points that rays reached from below, steeper than `_STEEP`."""
-    sensor_m = np.array([sensors_m[i] for i in scan_ids], float).reshape(-1, 3)
-    way_m = xyz_m - np.repeat(sensor_m, np.diff(first), axis=0)
-    return xyz_m[way_m[:, 2] > _STEEP * np.hypot(way_m[:, 0], way_m[:, 1]), 2]
+    steep_z_m: list[FloatArray] = [np.empty(0)]
+    for rows, (_, way_m) in zip(rays.rows, rays.headings(), strict=True):
+        is_steep = way_m[:, 2] > _STEEP * np.hypot(way_m[:, 0], way_m[:, 1])
+        steep_z_m.append(rays.xyz_m[rows, 2][is_steep])
+    return np.concatenate(steep_z_m)
 
 
 def _argsort_stably(values: FloatArray) -> IntArray:

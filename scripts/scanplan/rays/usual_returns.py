@@ -55,10 +55,11 @@ def count_below(usual: FloatArray, scan: IntArray, elevation_rad: FloatArray) ->
     at = (np.rad2deg(elevation_rad) + 90) * _ROWS_PER_DEG
     row = at.astype(np.int64)
     share = at - row
-    last = usual.shape[1] - 2
+    n_rows = usual.shape[1]
     out: list[FloatArray] = []
     for tilt in _TILTS:
-        tilted = np.clip(row + tilt, 0, last)
-        below = usual[scan, tilted]
-        out.append(below + share * (usual[scan, tilted + 1] - below))
+        # of all scans one after the other: taking by one number is faster than by two
+        tilted = np.clip(row + tilt, 0, n_rows - 2) + n_rows * scan
+        below = usual.take(tilted)
+        out.append(below + share * (usual.take(tilted + 1) - below))
     return np.array(out)

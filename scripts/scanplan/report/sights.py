@@ -1,7 +1,7 @@
 """From where each doubtful element was seen best, and what was measured there: for the page."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
@@ -67,7 +67,7 @@ def find_sights(
     waiting = iter(scans)
     while block := list(islice(waiting, _MOST_SCANS)):
         # the plan knows the floor better than some scans do
-        rays = replace(gather_rays(block, sensors_m, planar=planar), floor_z_m=plan.storey_m[0])
+        rays = gather_rays(block, sensors_m, planar=planar, floor_z_m=plan.storey_m[0])
         for element, what in asked.items():
             worth, scan = _choose_scan(plan, rays, what)
             if worth > found.get(element, ((0, 0.0),))[0]:

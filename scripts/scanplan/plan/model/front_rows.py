@@ -116,18 +116,21 @@ def extend_row(row: FrontRow, others: intersections.SpanArrays) -> FrontRow:
 
 def _find_answers(walls: Sequence[PlanWall], rays: RaySet) -> Answers:
     """Return the level returns that are of no wall, nor of its windows."""
-    way_m = rays.level_way_m
-    length_m = np.hypot(*way_m.T)
-    up_m = rays.xyz_m[:, 2] - rays.sensors_m[rays.scan, 2]
-    height_m = rays.xyz_m[:, 2] - rays.ground_z_m
-    is_kept = (length_m <= _FAR_M) & (height_m > SKIRTING_M) & (height_m < _TOP_M)
-    rows = np.flatnonzero(is_kept & (np.abs(up_m) <= SQUARE * length_m))
     # panes of windows stand behind the face of a facade whose other side nobody saw
     strips = wall_ground.wall_strips(walls, DEEP_M)
     ground = overlays.buffer_shapes(overlays.unite_areas(strips), FACE_M)
     shapely.prepare(ground)
-    rows = rows[~shapely.contains_xy(ground, *rays.xyz_m[rows, :2].T)]
-    return Answers(rays.xyz_m[rows, :2], way_m[rows], up_m[rows])
+    found: list[tuple[FloatArray, FloatArray]] = [(np.empty((0, 2)), np.empty((0, 3)))]
+    # scan by scan: what is worked out of all rays would take more memory than they do
+    for rows, (_, way_m) in zip(rays.rows, rays.headings(), strict=True):
+        xyz_m = rays.xyz_m[rows]
+        length_m, height_m = np.hypot(*way_m[:, :2].T), xyz_m[:, 2] - rays.ground_z_m
+        is_kept = (length_m <= _FAR_M) & (height_m > SKIRTING_M) & (height_m < _TOP_M)
+        is_kept &= np.abs(way_m[:, 2]) <= SQUARE * length_m
+        is_kept[is_kept] = ~shapely.contains_xy(ground, *xyz_m[is_kept, :2].T)
+        found.append((xyz_m[is_kept, :2], way_m[is_kept]))
+    xy_m, way_m = (np.concatenate(of) for of in zip(*found, strict=True))
+    return Answers(xy_m, np.ascontiguousarray(way_m[:, :2]), way_m[:, 2])
 
 
 def _find_directions(walls: Sequence[PlanWall]) -> list[FloatArray]:

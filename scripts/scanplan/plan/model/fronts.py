@@ -46,6 +46,7 @@ def gather_dense_rays(
     *,
     planar: bool,
     left_out: Mapping[int, BoolArray] | None = None,
+    floor_z_m: float | None = None,
     threads: int = 1,
 ) -> tuple[RaySet, FloatArray]:
     """Return rays from all along the way, of one scan of each place.
@@ -61,7 +62,7 @@ def gather_dense_rays(
         All retained scans.
     planar : bool
         Whether they lie in one plane.
-    left_out : dict of int to (72,) bool, optional
+    left_out, floor_z_m
         See `ray_set.gather_rays`.
 
     Returns
@@ -77,7 +78,14 @@ def gather_dense_rays(
     scans = read_scans(scan_ids)
     if not planar:
         scans = ((of, xyz_m[_are_level(xyz_m - sensors_m[of])]) for of, xyz_m in scans)
-    rays = gather_rays(scans, sensors_m, planar=planar, left_out=left_out, threads=threads)
+    rays = gather_rays(
+        scans,
+        sensors_m,
+        planar=planar,
+        left_out=left_out,
+        floor_z_m=floor_z_m,
+        threads=threads,
+    )
     return rays, poses[rows, :3, 2]
 
 
