@@ -33,7 +33,7 @@ def connect_walls(model: IfcModel, storey: StoreyPlan, walls: Sequence[entity_in
         place_m = shapely.get_coordinates(
             overlays.intersect_shapes(bodies[one], bodies[other]).centroid
         )[0]
-        model.file.create_entity(
+        model.new(
             "IfcRelConnectsPathElements",
             **model.rooted("IfcRelConnectsPathElements", walls[one], walls[other]),
             RelatingElement=walls[one],
@@ -160,7 +160,7 @@ def _add_boundary(
     is_external: bool,
 ) -> None:
     is_virtual = any(map(element.is_a, ("IfcOpeningElement", "IfcVirtualElement")))
-    model.file.create_entity(
+    model.new(
         "IfcRelSpaceBoundary",
         **model.rooted("IfcRelSpaceBoundary", space, element),
         RelatingSpace=space,
