@@ -311,6 +311,19 @@ def test_curved_walls_stay_as_measured_and_are_drawn_in_arcs(thickness_m):
     assert all(np.isfinite(path).all() for path in solid)
 
 
+@pytest.mark.parametrize("reach_m", [quarter_disc.RADIUS_M, 3.0])
+def test_an_unlikely_curved_wall_that_bounds_a_room_is_drawn(reach_m):
+    first, second, _ = quarter_disc.WALLS
+    room = shapely.Point(0, 0).buffer(reach_m, quad_segs=90) & shapely.box(0.1, 0.1, 9, 9)
+    # it ends loose, seen from one side
+    measured = quarter_disc.quarter(
+        [(first[0], np.nan, *first[2:]), second], rooms=floorplan_making.rooms([room])
+    )
+    walls = {**measured.walls, "p_true": np.array([0.3, 0.99])}
+    regular, _ = draft_plan(replace(measured, walls=walls), SETTINGS)
+    assert (0 in regular.walls["wall"]) == (reach_m == quarter_disc.RADIUS_M)
+
+
 def test_curved_walls_have_their_radius_beside_them():
     measured = quarter_disc.quarter(quarter_disc.WALLS)
     regular, changes = draft_plan(measured, SETTINGS)

@@ -105,11 +105,11 @@ def _find_bounding(plan: FloorPlan, floor: BaseGeometry) -> BoolArray:
 
     Less ways from a room into itself: these part nothing.
     """
-    lines_m = centrelines_m(plan.walls)
+    axes = plan.wall_shapes.draw_axes()
     near = overlays.buffer_shapes(floor.boundary, 2 * moved_walls.ON_M)
-    along = overlays.intersect_lines(floorplan.line_shapes(lines_m), near)
+    along = overlays.intersect_lines(axes, near)
     bounding_m = shapely.length(along) - _sum_nowhere(plan)
-    return bounding_m >= np.hypot(*(lines_m[:, 1] - lines_m[:, 0]).T) / 2
+    return np.asarray(bounding_m >= shapely.length(axes) / 2, bool)
 
 
 def _find_pieces(plan: FloorPlan) -> BoolArray:
