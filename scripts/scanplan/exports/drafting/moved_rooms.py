@@ -29,8 +29,10 @@ def move_outline(outline: Polygon, moved: MovedWalls) -> Polygon:
     rings = [
         _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(straight)
     ]
-    whole = [ring for ring in rings if len(ring) >= 3]
-    shape = overlays.repair_areas(Polygon(whole[0], whole[1:])) if whole else outline
+    shell, *holes = rings
+    if len(shell) < 3:
+        return outline
+    shape = overlays.repair_areas(Polygon(shell, [hole for hole in holes if len(hole) >= 3]))
     parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
     return _straighten(max(parts, key=lambda part: part.area, default=outline), _IN_LINE_M)
 
