@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from helpers import floorplan_making
 from scanplan.exports.drafting.directions import find_main_directions
+from scanplan.exports.drafting.moved_rooms import move_outline
+from scanplan.exports.drafting.moved_walls import MovedWalls
 from scanplan.exports.drafting.nominal_sizes import choose_sizes
 from scanplan.exports.drafting.regular_plan import (
     ASSUMED,
@@ -18,6 +20,7 @@ from scanplan.exports.drafting.regular_plan import (
     DraftSettings,
     draft_plan,
 )
+from scanplan.exports.drafting.wall_lines import WallLines
 from scanplan.plan.floorplan import centrelines_m
 
 SETTINGS = DraftSettings(
@@ -277,6 +280,19 @@ def test_faces_and_rooms_lie_on_sides_of_walls():
     assert [*sides_m[0, :, 1], *sides_m[1:, 0, 0]] == pytest.approx([0, 0, 4, 4.1], abs=1e-9)
     assert regular.areas[0].normalize().equals_exact(floorplan_making.ROOMS[0].normalize(), 1e-9)
     assert regular.areas[1].normalize().equals_exact(floorplan_making.ROOMS[1].normalize(), 1e-9)
+
+
+def test_an_outline_that_goes_on_beyond_its_wall_in_line_follows_the_wall_alone():
+    line_m = np.array([[[0.0, -0.1], [3.0, -0.1]]])
+    one = np.ones(1)
+    before = WallLines(line_m, 0.2 * one, 0.01 * one, one > 0, one < 0, 0.05)
+    lowered = MovedWalls(before, line_m - [0, 0.02], 0 * one)
+    room = shapely.Polygon([(0, 0), (3, 0), (8, 0), (8, 4), (0, 4)])
+    moved = move_outline(room, lowered)
+    wall_side, bare = shapely.points([(1.5, -0.02), (8, 0)])
+    assert shapely.distance(moved.boundary, [wall_side, bare]) == pytest.approx([0, 0], abs=1e-9)
+    # beyond its end no farther than it has moved
+    assert moved.area == pytest.approx(32 + 3 * 0.02 + 5 * 0.02 / 2)
 
 
 def test_a_face_before_its_wall_stays_as_far_from_it():

@@ -15,7 +15,6 @@ _ALONG_SINE = 0.05  # of 3 degrees: an edge that runs along a wall
 _CORNER_SINE = 0.17  # of 10 degrees: edges that turn less go on, and do not cross
 _STRAIGHT_M = 0.005
 """Off a straight line by less is noise of faces, and no more than a hair on paper."""
-_IN_LINE_M = 0.0005  # what lies on walls in one line is off it by rounding alone
 _LEAST_EDGE_M = 0.03  # a shorter one has no direction
 
 
@@ -25,23 +24,22 @@ def move_outline(outline: Polygon, moved: MovedWalls) -> Polygon:
     Every edge that lay along a side of a wall does so again; a corner is where its two edges cross,
     or on the one of them that lies on a wall. What lies on no wall stays.
     """
-    straight = _straighten(outline, _STRAIGHT_M)
     rings = [
-        _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(straight)
+        _move_ring(shapely.get_coordinates(ring), moved) for ring in shapely.get_rings(outline)
     ]
     shell, *holes = rings
     if len(shell) < 3:
         return outline
     shape = overlays.repair_areas(Polygon(shell, [hole for hole in holes if len(hole) >= 3]))
     parts = [part for part in shapely.get_parts(shape) if isinstance(part, Polygon)]
-    return _straighten(max(parts, key=lambda part: part.area, default=outline), _IN_LINE_M)
+    return _straighten(max(parts, key=lambda part: part.area, default=outline))
 
 
-def _straighten(outline: Polygon, off_m: float) -> Polygon:
+def _straighten(outline: Polygon) -> Polygon:
     """Return an outline without corners at which it does not turn, the first of each ring too."""
-    kept = overlays.simplify_shapes(outline, off_m)
+    kept = overlays.simplify_shapes(outline, _STRAIGHT_M)
     turned = [_turn_ring(shapely.get_coordinates(ring)) for ring in shapely.get_rings(kept)]
-    again = overlays.simplify_shapes(Polygon(turned[0], turned[1:]), off_m)
+    again = overlays.simplify_shapes(Polygon(turned[0], turned[1:]), _STRAIGHT_M)
     fewest = min(kept, again, key=shapely.get_num_coordinates)
     return fewest if isinstance(fewest, Polygon) and fewest.is_valid else outline
 
@@ -116,4 +114,7 @@ def _meet(before_m: FloatArray, after_m: FloatArray) -> list[FloatArray]:
         return ends_m[:1] if is_one else ends_m
     to_m = after_m[0] - before_m[1]
     along_m = (to_m[0] * directions[1][1] - to_m[1] * directions[1][0]) / sine
-    return [before_m[1] + along_m * directions[0]]
+    corner_m = before_m[1] + along_m * directions[0]
+    # farther off it would be drawn where no wall is
+    is_near = max(np.hypot(*(corner_m - end_m)) for end_m in ends_m) <= 2 * END_M
+    return [corner_m] if is_near else ends_m
