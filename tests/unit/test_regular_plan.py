@@ -182,34 +182,36 @@ def test_what_is_regular_stays_but_for_what_is_assumed():
     assert not {"verify", "p_true", "doubt"} & set(regular.walls)
 
 
-@pytest.mark.parametrize(
-    ("deep_m", "thick_m", "said"),
-    [
-        ([0.42, 0.41], 0.415, REVEALS),  # between the catalogue's: as deep as they are
-        ([0.39, 0.38], 0.4, REVEALS),  # a thickness of the catalogue
-        ([0.2, 0.2], 0.3, ASSUMED),  # they end at a frame
-        ([0.42], 0.3, ASSUMED),  # one alone may be something else
-        ([0.42, 1.4], 0.3, ASSUMED),  # the other leads on
-    ],
-)
-def test_a_facade_is_as_thick_as_its_reveals_are_deep(deep_m, thick_m, said):
-    """The east wall, whose face is at 7.1 m, with a window from 1 to 2 m."""
-    sides = [((7.1, y, 7.1 + deep, y), np.nan, 0, -1, "observed")
-             for y, deep in zip((1.0, 2.0), deep_m, strict=False)]  # fmt: skip
-    rows = [*floorplan_making.WALLS, *sides]
-    window = ((7.1, 1.0, 7.1, 2.0), 1, "window", 0.9, 2.1, 1, -1)
-    drawn = floorplan_making.plan(
+def revealed(deep_m, **others):
+    """The east wall, whose face is at 7.1 m, as thick as the reveals of its window are deep."""
+    east = ((7.1 + deep_m / 2, -0.1, 7.1 + deep_m / 2, 3.1), deep_m, 1, -1, "observed")
+    rows = [others.get(f"wall_{n}", of) for n, of in enumerate(floorplan_making.WALLS)]
+    rows[1] = east
+    reveals = [(7.1 + deep_m, 1.0, 7.1, 1.0, 1), (7.1, 2.0, 7.1 + deep_m, 2.0, 1)]
+    return floorplan_making.plan(
         walls=floorplan_making.walls(rows),
-        openings=floorplan_making.openings([*floorplan_making.OPENINGS, window], rows),
+        faces=floorplan_making.faces([*floorplan_making.FACES, *reveals]),
     )
-    regular, drafted = draft_plan(drawn, replace(SETTINGS, walls_m=(0.1, 0.2, 0.4)))
+
+
+@pytest.mark.parametrize(
+    ("deep_m", "thick_m"),
+    [(0.45, 0.45), (0.39, 0.4)],  # between the catalogue's, and near to one
+)
+def test_a_facade_is_as_thick_as_its_reveals_are_deep(deep_m, thick_m):
+    regular, drafted = draft_plan(revealed(deep_m), replace(SETTINGS, walls_m=(0.1, 0.2, 0.4)))
     (east,) = np.flatnonzero(regular.walls["wall"] == 1)
     assert regular.walls["thickness_m"][east] == pytest.approx(thick_m)
-    assert regular.walls["thickness_from"][east] == said
-    assert drafted.n_revealed == (said == REVEALS)
-    # its face stays where it was seen, and what is assumed lies behind it
-    assert regular.bodies[east].bounds[0] == pytest.approx(7.1)
-    assert not {6, 7} & set(regular.walls["wall"].tolist()) or deep_m[-1] > 1
+    assert regular.walls["thickness_from"][east] == REVEALS
+    assert drafted.n_revealed == 1
+
+
+def test_a_facade_without_reveals_is_as_thick_as_those_with():
+    """The north wall of the small room, of which its face alone is known."""
+    north = ((7.1, 3.0, 4.05, 3.0), np.nan, 2, -1, "observed")
+    regular, _ = draft_plan(revealed(0.45, wall_2=north), SETTINGS)
+    assert regular.walls["thickness_m"][2] == pytest.approx(0.45)
+    assert regular.walls["thickness_from"][2] == ASSUMED
 
 
 def test_rooms_follow_walls_and_leave_neither_gap_nor_overlap():
@@ -285,7 +287,7 @@ def test_faces_and_rooms_lie_on_sides_of_walls():
 def test_an_outline_that_goes_on_beyond_its_wall_in_line_follows_the_wall_alone():
     line_m = np.array([[[0.0, -0.1], [3.0, -0.1]]])
     one = np.ones(1)
-    before = WallLines(line_m, 0.2 * one, 0.01 * one, one > 0, one < 0, 0.05)
+    before = WallLines(line_m, 0.2 * one, 0.01 * one, one > 0, one < 0, one < 0, 0.05)
     lowered = MovedWalls(before, line_m - [0, 0.02], 0 * one)
     room = shapely.Polygon([(0, 0), (3, 0), (8, 0), (8, 4), (0, 4)])
     moved = move_outline(room, lowered)

@@ -9,16 +9,12 @@ from scanplan.exports import envelope
 from scanplan.exports.drafting.wall_lines import WallLines
 from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_shapes
-from scanplan.plan.tolerances import END_M
 from scanplan.types import BoolArray, FloatArray
 
 _NEAR_M = 0.05  # behind a face: its own line, and those of doubles of it, are nearer
 _ACROSS_M = 4.0  # to the next wall or room: over ground as wide as a room that no scan shows whole
 _BACK_M = 0.05  # of what closes a recess: a thin door leaf in its frame, or a board
 _ALONG = 0.98  # cosine of ten degrees: surfaces of one wall are as parallel
-_SQUARE = 0.2  # cosine of 80 degrees: reveals are built square, and are short
-_THICKEST_M = 1.0  # of facades: what leads farther behind one is no reveal
-_FEWEST = 2  # reveals: of a window, which has two
 _SHARES = np.linspace(0.05, 0.95, 10)  # of places along a wall, its corners left out
 
 
@@ -51,42 +47,6 @@ def find_behind(plan: FloorPlan) -> FloatArray:
     left = left_normals(centrelines_m(plan.walls))
     left_m, right_m = plan.sides_m
     return np.where((left_m > right_m)[:, None], left, -left)
-
-
-def measure_reveals(plan: FloorPlan, is_facade: BoolArray) -> FloatArray:
-    """Return how deep the reveals of openings in facades (n,) are, NaN of none; metres.
-
-    A facade is as thick as they are, or thicker: they end at its outer side, or at a frame. A
-    reveal is a wall seen from one side that leads from a jamb to behind the facade, square to it.
-    Two say more than one, which may be something else: the median of a facade's own, or else that
-    of all facades.
-
-    Parameters
-    ----------
-    is_facade : (n,) bool
-        See `find_facades`.
-    """
-    lines_m, openings_m = centrelines_m(plan.walls), centrelines_m(plan.openings)
-    ways_m = lines_m[:, 1] - lines_m[:, 0]
-    directions = ways_m / np.hypot(*ways_m.T)[:, None]
-    behind, rows = find_behind(plan), np.arange(len(lines_m))
-    depths_m: dict[int, FloatArray] = {}
-    for facade in np.flatnonzero(is_facade).tolist():
-        jambs_m = openings_m[plan.hosts == facade].reshape(-1, 2) @ directions[facade]
-        deep_m = np.sort((lines_m - lines_m[facade, 0]) @ behind[facade], axis=1)
-        from_jamb_m = (lines_m.mean(axis=1) @ directions[facade])[:, None] - jambs_m
-        is_reveal = ~plan.thick & (rows != facade)
-        is_reveal &= np.abs(directions @ directions[facade]) < _SQUARE
-        is_reveal &= (np.abs(deep_m[:, 0]) <= END_M) & (deep_m[:, 1] > END_M)
-        is_reveal &= deep_m[:, 1] <= _THICKEST_M
-        is_reveal &= (np.abs(from_jamb_m) <= 2 * END_M).any(axis=1)
-        depths_m[facade] = deep_m[is_reveal, 1]
-    found_m = np.full(len(lines_m), np.nan)
-    every_m = np.concatenate([np.empty(0), *depths_m.values()])
-    for facade, own_m in depths_m.items():
-        known_m = own_m if len(own_m) >= _FEWEST else every_m
-        found_m[facade] = np.median(known_m) if len(known_m) >= _FEWEST else np.nan
-    return found_m
 
 
 def limit_backs(walls: WallLines, behind_m: FloatArray) -> FloatArray:

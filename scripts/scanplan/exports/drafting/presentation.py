@@ -9,7 +9,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from scanplan.exports.drafting.fixtures import draw_fixtures
-from scanplan.exports.drafting.regular_plan import MEASURED, Drafted
+from scanplan.exports.drafting.regular_plan import ASSUMED, Drafted
 from scanplan.exports.drafting.scraps import BARE, find_nowhere
 from scanplan.exports.sheet import content
 from scanplan.exports.sheet.composition import Sheet, lay_out
@@ -84,7 +84,7 @@ def compose_overview(
 
 
 def _show_regular(measured: FloorPlan, regular: FloorPlan, notes: Sequence[str]) -> Shown:
-    is_measured = np.asarray(regular.walls["thickness_from"] == MEASURED, bool)
+    is_measured = np.asarray(regular.walls["thickness_from"] != ASSUMED, bool)
     spans_m = _find_spans(regular, is_measured)
     doubtful = measured.walls["wall"][content.is_doubtful(measured.walls)]
     return Shown(
@@ -132,7 +132,7 @@ def _find_backs(plan: FloorPlan) -> Array:
     """Return the ground of walls that close openings without leaf or pane behind, (m,)."""
     lines = floorplan.line_shapes(floorplan.centrelines_m(plan.walls))
     bodies = plan.bodies
-    is_single = np.asarray(plan.walls["thickness_from"] != MEASURED, bool)
+    is_single = np.asarray(plan.walls["thickness_from"] == ASSUMED, bool)
     backs = np.full(len(plan.gaps), shapely.Polygon(), object)
     for row in np.flatnonzero(np.isin(plan.openings["type"], BARE)).tolist():
         within_m = shapely.length(overlays.intersect_lines(lines, plan.gaps[row]))

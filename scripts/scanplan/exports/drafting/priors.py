@@ -85,11 +85,10 @@ def want_regular(walls: WallLines, sizes_m: tuple[float, ...]) -> Wanted:
     off_sigmas = (swung_m / walls.sigma_m)[is_telling]
     if len(off_sigmas) and np.median(off_sigmas) > _SQUARE_SIGMAS:
         is_near &= swung_m <= walls.sigma_m
-    sigma_m = np.sqrt(2) * walls.sigma_m
     nominal_m = choose_sizes(
         np.where(walls.is_bent, np.nan, walls.thickness_m),
-        sigma_m,
-        walls.allow(sigma_m),
+        walls.sigma_thickness_m,
+        walls.allow(walls.sigma_thickness_m),
         sizes_m,
         walls.lengths_m,
     )

@@ -9,11 +9,11 @@ import shapely
 
 from scanplan.exports.drafting import moved_openings, moved_rooms, moved_walls
 from scanplan.exports.drafting.adjustment import adjust_walls
-from scanplan.exports.drafting.facades import find_facades, limit_backs, measure_reveals
+from scanplan.exports.drafting.facades import find_facades, limit_backs
 from scanplan.exports.drafting.joined_walls import join_walls
 from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
-from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_stated
+from scanplan.exports.drafting.nominal_sizes import find_stated
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.square_columns import square_columns
@@ -22,17 +22,12 @@ from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.exports.sheet.openings import state_swings
 from scanplan.geometry.lines import left_normals
 from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
-from scanplan.types import Columns, FloatArray, IntArray
+from scanplan.types import Columns, FloatArray
 from scanplan.validation import doubts
 
 _DOUBTS = ("p_true", "verify", "about", "doubt", "needs_person")
 MEASURED, ASSUMED, REVEALS = "measured", "assumed", "reveals"
-"""Where a wall's thickness is from: a facade is as thick as its reveals are deep, or as assumed."""
-_SHORT_M = 0.01
-"""By which reveals are seen less deep than walls are thick, and by which that errs (bench)."""
-_NOMINAL_M = 0.02
-"""From there to a thickness of the catalogue: a wall is hardly thinner than its reveals."""
-_STEP_M = 0.005  # of other thicknesses, as types are sorted by
+"""Where a wall's thickness is from: its sides, nothing, or reveals behind its only side."""
 
 
 @dataclass(frozen=True)
@@ -113,8 +108,6 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     plan, n_cut = cut_stubs(whole, is_facade)
     if plan is not whole:
         is_facade = find_facades(plan)
-    reveals_m = _find_reveals(surveyed, plan.walls["wall"][is_facade], settings)
-    deep_m = np.array([reveals_m.get(wall, 0.0) for wall in plan.walls["wall"].tolist()])
     walls = gather_lines(plan, settings.tolerance_m)
     wanted = want_regular(walls, tuple(settings.walls_m))
     nominal_m = np.where(find_stated(plan.walls), np.nan, wanted.nominal_m)
@@ -122,10 +115,13 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
     adjusted = adjust_walls(walls, wanted)
     moved = moved_walls.move_walls(walls, wanted, adjusted)
     grown_m = np.where(walls.is_thick, adjusted.grown_m, 0.0)
-    facade_m = max(settings.facade_m, plan.assumed_thickness_m)
-    behind_m = np.where(is_facade, np.maximum(facade_m, deep_m), plan.assumed_thickness_m)
-    thickness_from = np.where(deep_m > facade_m, REVEALS, ASSUMED)
-    thickness_from = np.where(walls.is_thick, MEASURED, thickness_from).astype(object)
+    # facades without a reveal are as thick as the others are
+    revealed_m = walls.thickness_m[walls.is_revealed]
+    facade_m = float(np.median(revealed_m)) if len(revealed_m) else settings.facade_m
+    facade_m = max(facade_m, plan.assumed_thickness_m)
+    behind_m = np.where(is_facade, facade_m, plan.assumed_thickness_m)
+    thickness_from = np.where(walls.is_thick, MEASURED, ASSUMED).astype(object)
+    thickness_from[walls.is_revealed] = REVEALS
     behind_m = limit_backs(walls, behind_m)
     # of curved walls what is behind the face is drawn as on the measured sheet
     behind_m = np.where(walls.is_bent, np.nan, behind_m)
@@ -180,22 +176,6 @@ def draft_plan(surveyed: FloorPlan, settings: DraftSettings) -> tuple[FloorPlan,
         + (len(surveyed.openings["opening"]) - len(regular.openings["opening"])),
     )
     return regular, drafted
-
-
-def _find_reveals(plan: FloorPlan, facades: IntArray, settings: DraftSettings) -> dict[int, float]:
-    """Return how thick facades are at least, metres, by numbers of those that show reveals.
-
-    A thickness of the catalogue where one is near enough.
-    """
-    walls = plan.walls["wall"]
-    depths_m = measure_reveals(plan, np.isin(walls, facades))
-    sigmas_m, within_m = (np.full(len(walls), of_m) for of_m in (_SHORT_M, _NOMINAL_M))
-    likely_m = depths_m + _SHORT_M
-    nominal_m = choose_sizes(likely_m, sigmas_m, within_m, settings.walls_m, plan.lengths_m)
-    rounded_m = _STEP_M * np.round(depths_m / _STEP_M)
-    thick_m = np.where(np.isfinite(nominal_m), nominal_m, rounded_m)
-    known = np.flatnonzero(np.isfinite(thick_m)).tolist()
-    return {int(walls[row]): float(thick_m[row]) for row in known}
 
 
 def _move_openings(plan: FloorPlan, settings: DraftSettings) -> Columns:

@@ -160,7 +160,9 @@ def _cut_faces(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Columns
         # at an end that is not cut a face may go on farther than its wall's line
         low_m, high_m = np.where(is_cut[wall], (0.0, length_m), (-np.inf, np.inf))
         within_m = np.clip(along_m, low_m, high_m)
-        is_left[face] = abs(within_m[1] - within_m[0]) > SHORTEST_M
+        # reveals are across: they have no length along
+        is_whole = (within_m == along_m).all()
+        is_left[face] = is_whole or abs(within_m[1] - within_m[0]) > SHORTEST_M
         faces_m[face] += (within_m - along_m)[:, None] * (span_m / length_m)
     cut = {**plan.faces, **line_columns(faces_m)}
     return {name: values[is_left] for name, values in cut.items()}

@@ -10,6 +10,8 @@ from scanplan.types import BoolArray, FloatArray
 
 _SQUARE_M = 0.03  # walls off by less are straight and square, as DIN 18202 lets them be built
 _SIGMAS = 3.0  # beyond as many, a wall is known to lie where it does
+_SQUARE = 0.5  # cosine of 60 degrees: reveals are built square, and are short
+_REVEAL_SIGMA_M = 0.015  # of where reveals end (facades of the bench's tuning half)
 _FALLBACK_SIGMA_M = 0.01  # of a wall that none is stated of: what is usual of a real survey
 
 
@@ -27,6 +29,8 @@ class WallLines:
         Standard deviation of a line's place across it.
     is_seen_from_left : (n,) bool
         Of walls without a thickness: on which side of them their face was seen.
+    is_revealed : (n,) bool
+        Which are as thick as reveals are deep behind the one side that was seen.
     is_bent : (n,) bool
         Which are chords of curved walls: these stay.
     tolerance_m : float
@@ -37,6 +41,7 @@ class WallLines:
     thickness_m: FloatArray
     sigma_m: FloatArray
     is_seen_from_left: BoolArray
+    is_revealed: BoolArray
     is_bent: BoolArray
     tolerance_m: float
 
@@ -59,6 +64,11 @@ class WallLines:
     def is_thick(self) -> BoolArray:
         """Of which walls (n,) both sides are known."""
         return np.isfinite(self.thickness_m)
+
+    @cached_property
+    def sigma_thickness_m(self) -> FloatArray:
+        """Standard deviation of the thickness (n,): of both sides, or of where reveals end."""
+        return np.where(self.is_revealed, _REVEAL_SIGMA_M, np.sqrt(2) * self.sigma_m)
 
     @cached_property
     def half_m(self) -> FloatArray:
@@ -85,6 +95,19 @@ def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
         np.asarray(walls["thickness_m"], float),
         np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
         np.asarray(has_left | ~has_right, bool),
+        plan.thick & (has_left != has_right) & _find_across(plan),
         plan.wall_shapes.is_bent,
         tolerance_m,
     )
+
+
+def _find_across(plan: FloorPlan) -> BoolArray:
+    """Return which straight walls (n,) have faces across their line: reveals."""
+    ways_m, faces_m = (np.diff(centrelines_m(of), axis=1)[:, 0] for of in (plan.walls, plan.faces))
+    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
+    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    own = np.flatnonzero(host >= 0)
+    along_m = np.abs(np.einsum("ij,ij->i", faces_m[own], ways_m[host[own]]))
+    lengths_m = np.hypot(*faces_m[own].T) * np.hypot(*ways_m[host[own]].T)
+    across = host[own][along_m < _SQUARE * lengths_m]
+    return np.isin(np.arange(len(ways_m)), across) & ~plan.wall_shapes.is_bent

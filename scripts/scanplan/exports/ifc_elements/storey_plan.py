@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from scanplan.exports.data.element_ids import ElementIds
-from scanplan.exports.drafting.regular_plan import MEASURED
+from scanplan.exports.drafting.regular_plan import ASSUMED
 from scanplan.exports.ifc_model import ClassCode
 from scanplan.exports.sheet.leaves import Swing
 from scanplan.exports.sheet.locale import Locale
@@ -45,10 +45,10 @@ class StoreyPlan:
 
     @cached_property
     def is_thickness_measured(self) -> BoolArray:
-        """Of which walls (n,) both sides were seen."""
+        """Of which walls (n,) both sides were seen, or how deep reveals are."""
         if "thickness_from" not in self.plan.walls:
             return self.plan.thick
-        return self.plan.thick & np.asarray(self.plan.walls["thickness_from"] == MEASURED, bool)
+        return self.plan.thick & np.asarray(self.plan.walls["thickness_from"] != ASSUMED, bool)
 
     @cached_property
     def swings(self) -> Mapping[int, Swing]:
