@@ -351,10 +351,14 @@ def plan_of(folder, files, **topics):
 
 
 def list_walls(plan):
-    """Return the ends (n, 2, 2) of the walls, each along an axis, the lesser end first."""
+    """Return the ends (n, 2, 2) of the walls, each along an axis, the lesser end first.
+
+    As far as rooms reach: facades lie where they were seen, however thick they are known to be.
+    """
     walls = plan["walls"]
     ends = np.column_stack([walls[name] for name in ("x0_m", "y0_m", "x1_m", "y1_m")])
-    return np.sort(ends.reshape(-1, 2, 2), axis=1)
+    low_m, high_m = np.reshape(shapely.union_all(list_rooms(plan)).bounds, (2, 2))
+    return np.sort(np.clip(ends.reshape(-1, 2, 2), low_m, high_m), axis=1)
 
 
 def list_doors(plan):

@@ -6,7 +6,8 @@ import shapely
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from helpers.correcting import corrected, faces_of, write_plan
+from helpers import floorplan_making
+from helpers.correcting import MADE, corrected, faces_of, write_plan
 from helpers.refusals import assert_told, refused
 from scanplan.plan import floorplan, planning
 from scanplan.store import schemas, tables
@@ -90,6 +91,49 @@ def test_a_thickness_is_behind_the_only_side_that_was_seen(plan):
     np.testing.assert_allclose(sorted(faces_of(found, 1)[:, 0, 0]), [7.1, 7.46])
     assert found.solid("observed").covers(shapely.Point(7.3, 1.5))
     assert wall["face_left"] == 1 and wall["face_right"] in found.faces["face"]
+
+
+@pytest.fixture
+def revealed(plan):
+    """The east wall 0.4 m thick by the reveals of a window from y = 1 to 2 m."""
+    walls, faces, openings = (
+        {name: column.copy() for name, column in MADE[table]().items()}
+        for table in ("walls", "faces", "openings")
+    )
+    for name, value in {"x0_m": 7.3, "x1_m": 7.3, "thickness_m": 0.4}.items():
+        walls[name][1] = value
+    rows = [*floorplan_making.FACES, (7.5, 3, 7.5, 2, 1), (7.5, 1, 7.5, 0, 1),
+            (7.5, 1, 7.1, 1, 1), (7.1, 2, 7.5, 2, 1)]  # fmt: skip
+    faces = floorplan_making.faces(rows)
+    ends = {"x0_m": 7.3, "y0_m": 1.0, "x1_m": 7.3, "y1_m": 2.0}
+    known = {"type": "window", "width_m": 1.0, "thickness_m": 0.4, "room_a": 1, "room_b": -1}
+    window = {"opening": 3, "wall": 1, **ends, **known}
+    openings = {
+        name: np.append(column, np.array([window.get(name, column[0])], column.dtype))
+        for name, column in openings.items()
+    }
+    for name, columns in {"walls": walls, "faces": faces, "openings": openings}.items():
+        tables.write_table(plan[name], planning.TABLES[name], columns)
+    return plan
+
+
+def test_a_thickness_of_a_wall_known_by_reveals_is_behind_its_only_side(revealed):
+    found = corrected(revealed, {"element": "wall", "at": [7.2, 0.5], "thickness_m": 0.3})
+    wall = row_of(found.walls, "wall", 1)
+    assert (wall["thickness_m"], wall["x0_m"]) == pytest.approx((0.3, 7.25))
+    x_m = faces_of(found, 1)[:, :, 0]
+    # the side that was seen stays, what was inferred behind it and both reveals follow
+    assert sorted(map(sorted, x_m.tolist())) == [
+        pytest.approx(of) for of in ([7.1, 7.1], [7.1, 7.4], [7.1, 7.4], [7.4, 7.4], [7.4, 7.4])
+    ]
+
+
+def test_a_window_that_is_none_has_no_reveals(revealed):
+    found = corrected(revealed, {"element": "opening", "at": [7.3, 1.5], "action": "remove"})
+    lines_m = faces_of(found, 1)
+    assert np.allclose(lines_m[:, 0, 0], lines_m[:, 1, 0])
+    outer = lines_m[np.isclose(lines_m[:, 0, 0], 7.5)]
+    assert shapely.union_all(shapely.linestrings(outer)).length == pytest.approx(3)
 
 
 @pytest.mark.parametrize("kind", ["furniture", "column"])

@@ -60,17 +60,18 @@ def face_columns(
     dict of (int, bool) to int
         The row of the longest observed face of each side: by wall, and whether it is the left one.
     """
-    faces: list[tuple[int, bool, FaceInterval | InferredFace]] = []
+    faces: list[tuple[int, bool | None, FaceInterval | InferredFace]] = []
     for number, wall in enumerate(walls):
         faces += [(number, True, face) for face in wall.left]
         faces += [(number, False, face) for face in wall.right]
         faces += [(number, face.is_left, face) for face in wall.inferred]
+        faces += [(number, None, face) for face in wall.reveals]
     faces.sort(key=lambda numbered: _rank(numbered[2]))
     rows: list[Row] = []
     main_rows: dict[tuple[int, bool], int] = {}
     for row, (number, is_left, face) in enumerate(faces):
         rows.append({"face": row, **_face_row(face, floor_z_m), "wall": number})
-        if isinstance(face, FaceInterval):
+        if isinstance(face, FaceInterval) and is_left is not None:
             main_rows.setdefault((number, is_left), row)
     return columns_of_rows(rows, schemas.FACES), main_rows
 

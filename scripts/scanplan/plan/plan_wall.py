@@ -22,13 +22,14 @@ _THICKNESS_M = 0.1  # of a partition, where no wall shows both sides
 class InferredFace(Span):
     """A face that no point shows, between or opposite to observed ones of its wall.
 
-    From `low_m` to `high_m` along the line; `is_left` if it is on the wall's left side.
+    From `low_m` to `high_m` along the line; `is_left` if it is on the wall's left side, None of a
+    reveal, which is across it.
     """
 
     line: Line
     low_m: float
     high_m: float
-    is_left: bool
+    is_left: bool | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +61,14 @@ class PlanWall(Span):
         on the left of the way along it.
     low_m, high_m : float
     thickness_m : float
-        NaN where one side is known.
+        NaN where one side is known, and no reveal shows it.
     left, right : list of intervals.FaceInterval
         Its faces on the side of the line's normal, and on the other, which is empty where one side
         is known.
     openings, closed : list of openings.Opening
         Ways through, and gaps taken for wall; in order along it.
+    reveals : list of intervals.FaceInterval
+        Surfaces of its openings across it.
     inferred : list of InferredFace
         What else it has of faces, once `wall_faces` has cut them.
     p_wall, p_solid : float
@@ -86,6 +89,7 @@ class PlanWall(Span):
     right: list[FaceInterval]
     openings: list[Opening] = field(default_factory=list)
     closed: list[Opening] = field(default_factory=list)
+    reveals: list[FaceInterval] = field(default_factory=list)
     inferred: list[InferredFace] = field(default_factory=list)
     p_wall: float = math.nan
     p_solid: float = math.nan

@@ -32,6 +32,7 @@ from scanplan.plan.plan_wall import (
     list_faces,
     usual_thickness_m,
 )
+from scanplan.plan.reveals import settle_reveals
 from scanplan.plan.rooms import partings, room_bounds
 from scanplan.plan.rooms.parting_lines import Floor
 from scanplan.plan.rooms.room import Room, RoomSettings
@@ -251,7 +252,13 @@ def make_plan(
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
     surfaces = _settle(surfaces, spaces, settings.openings.max_door_m)
-    walls, bare = surfaces.walls, survey.find_bare_spans(surfaces, spaces)
+    bare = survey.find_bare_spans(surfaces, spaces)
+    walls, tops_m = settle_reveals(
+        surfaces.walls,
+        surfaces.tops_m,
+        rays,
+        max_thickness_m=settings.pairs.max_thickness_m,
+    )
     floor_z_m = rays.ground_z_m
     cut_walls = wall_faces.cut_wall_faces(
         walls,
@@ -262,7 +269,7 @@ def make_plan(
     scans = uncertainty.place_scans(
         rays.sensors_m[:, :2], chosen.covariance, settings.merge.registration_sigma_m
     )
-    evidence = uncertainty.estimate_evidence(walls, surfaces.tops_m, scans)
+    evidence = uncertainty.estimate_evidence(walls, tops_m, scans)
     doubtful = [known.needs_a_visit(settings.trust) for known in evidence]
     free_floor = _find_free_floor(surfaces.bounds, survey.floor)
     return Plan(

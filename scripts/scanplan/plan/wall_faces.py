@@ -6,13 +6,16 @@ from dataclasses import replace
 import numpy as np
 import shapely
 from shapely.geometry import LineString, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from scanplan.geometry import overlays
 from scanplan.geometry.intervals import find_gaps
 from scanplan.geometry.lines import Line
 from scanplan.plan.curves.arc_faces import infer_bent_faces
 from scanplan.plan.faces.intervals import FaceInterval
+from scanplan.plan.openings import GAP
 from scanplan.plan.plan_wall import InferredFace, PlanWall
+from scanplan.plan.reveals import is_at_jamb, list_jambs
 from scanplan.plan.tolerances import END_M
 from scanplan.rays.face_raster import CELL_M
 
@@ -61,8 +64,22 @@ def cut_wall_faces(
             for low_m, high_m in ground.cut(line, extent_m, number)
             if high_m - low_m >= END_M or wall.bend
         ]
+        inferred += _unseen_reveals(wall)
         cut.append(replace(wall, left=left, right=right, inferred=inferred))
     return cut
+
+
+def _unseen_reveals(wall: PlanWall) -> Iterator[InferredFace]:
+    """Yield the reveals of ways through a wall of known thickness that nobody saw.
+
+    How deep a gap is, is not known: it may be a niche.
+    """
+    if np.isnan(wall.thickness_m):
+        return
+    for way, jamb_m, into in list_jambs(wall):
+        is_seen = any(is_at_jamb(face, jamb_m, into) for face in wall.reveals)
+        if not (is_seen or way.is_above_wall or way.kind == GAP):
+            yield InferredFace(Line(jamb_m, into), -wall.half_m, wall.half_m, None)
 
 
 class _Ground:
@@ -85,27 +102,37 @@ class _Ground:
         return sorted((float(part_m.min()), float(part_m.max())) for part_m in parts_m)
 
 
-def _block(wall: PlanWall) -> Polygon:
-    """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing."""
+def _block(wall: PlanWall) -> BaseGeometry:
+    """Return the ground of a wall of known thickness, a little longer and slimmer; else nothing.
+
+    A gap may be a niche, whose back is in the wall.
+    """
     if np.isnan(wall.thickness_m) or wall.half_m <= _INSIDE_M:
         return Polygon()
     across_m = wall.half_m - _INSIDE_M
-    right, left = (
-        wall.trace(wall.low_m, wall.high_m, off_m, beyond_m=CELL_M)
-        for off_m in (-across_m, across_m)
-    )
+    niches = [
+        _strip(wall, gap.low_m, gap.high_m, across_m) for gap in wall.openings if gap.kind == GAP
+    ]
+    block = _strip(wall, wall.low_m, wall.high_m, across_m, beyond_m=CELL_M)
+    return overlays.subtract_areas(block, overlays.unite_areas(niches)) if niches else block
+
+
+def _strip(
+    wall: PlanWall, low_m: float, high_m: float, across_m: float, *, beyond_m: float = 0.0
+) -> Polygon:
+    right, left = (wall.trace(low_m, high_m, off_m, beyond_m) for off_m in (-across_m, across_m))
     return Polygon([*right, *left[::-1]])
 
 
 def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Line, Extent, bool]]:
     """Yield line, extent and side (left) of the faces to infer of a wall."""
     for side, is_left in ((wall.left, True), (wall.right, False)):
-        if not side:
+        if not side and not wall.reveals:
             continue
         sign = 1 if is_left else -1
         centre = wall.line.centre + sign * wall.half_m * wall.line.normal
         line = Line(centre, sign * wall.line.normal)
-        if wall.right:
+        if wall.right or not side:
             extents_m = _between_intervals(wall, side, line, max_beyond_m)
         else:
             extents_m = [_extent_m(line, wall, gap.low_m, gap.high_m) for gap in wall.closed]
@@ -116,16 +143,19 @@ def _inferred_extents(wall: PlanWall, max_beyond_m: float) -> Iterator[tuple[Lin
 def _between_intervals(
     wall: PlanWall, side: Sequence[FaceInterval], line: Line, max_beyond_m: float
 ) -> list[Extent]:
-    """Return the extents of a side, along its line, in no observed interval and no opening."""
-    intervals_m = np.sort([line.along_m(interval.ends) for interval in side], axis=1)
+    """Return the extents of a side, along its line, in no observed interval and no opening.
+
+    Of a side that nobody saw, those of its whole wall.
+    """
+    intervals_m = np.sort([line.along_m(i.ends) for i in side]).reshape(-1, 2)
     ways_m = [
         _extent_m(line, wall, opening.low_m, opening.high_m)
         for opening in wall.openings
         if not opening.is_above_wall
     ]
-    first_m = intervals_m.min()
-    last_m = intervals_m.max()
     begin_m, end_m = np.sort(line.along_m(wall.ends))
+    first_m = intervals_m.min() if side else begin_m
+    last_m = intervals_m.max() if side else end_m
     low_m = begin_m if first_m - begin_m <= max_beyond_m else first_m
     high_m = end_m if end_m - last_m <= max_beyond_m else last_m
     occupied_m = np.concatenate([intervals_m, np.array(ways_m).reshape(-1, 2)])

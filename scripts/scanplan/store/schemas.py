@@ -238,7 +238,8 @@ FACES = Schema(
 )
 """Surfaces of the plan.
 
-`state` is observed or inferred, `wall` the wall that the face is a side of (-1: of none).
+`state` is observed or inferred, `wall` the wall that the face is a side of, or across which it is
+a reveal (-1: of none).
 """
 _CENTRELINE = dict.fromkeys(("x0_m", "y0_m", "x1_m", "y1_m"), "float64")
 ARC = ("arc_x_m", "arc_y_m", "arc_radius_m", "sigma_radius_m")
@@ -276,9 +277,10 @@ PLAN_WALLS = Schema(
 )
 """Walls of the plan.
 
-One seen from a single side has no thickness (NaN), and its line is that of its face. `p_wall` is
-how likely it is a wall by what is around it, no leaf, furniture or what is outside, `p_solid` how
-likely what lies between its openings is solid, by rays (NaN: of one that a person drew).
+One seen from a single side is as thick as the reveals of its openings are deep; where none shows
+that, it has no thickness (NaN), and its line is that of its face. `p_wall` is how likely it is a
+wall by what is around it, no leaf, furniture or what is outside, `p_solid` how likely what lies
+between its openings is solid, by rays (NaN: of one that a person drew).
 The line of a curved wall is the shorter arc between its ends around `arc_x_m`, `arc_y_m`, of
 `arc_radius_m` with its standard deviation `sigma_radius_m` (NaN: of a straight wall); its faces are
 chords within 2 mm of their circle.

@@ -9,6 +9,7 @@ from scanplan.geometry import overlays
 from scanplan.geometry.lines import left_normals
 from scanplan.plan import floorplan
 from scanplan.plan.corrections.rows import PlanRows, Row
+from scanplan.plan.tolerances import END_M
 from scanplan.store import schemas
 from scanplan.types import FloatArray
 
@@ -96,7 +97,7 @@ def add_opening(rows: PlanRows, wall: Row, opening: Row) -> None:
 
 
 def close_opening(rows: PlanRows, opening: Row) -> Row | None:
-    """Let the faces of a wall go on where an opening was, on the sides that it has faces on.
+    """Let the faces of a wall go on where an opening was, on the sides that are known; no reveals.
 
     Returns
     -------
@@ -111,11 +112,21 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
     half_m = half_m_of(wall)
-    if wall["face_left"] >= 0:
+    own = [row for row in rows.faces if row["wall"] == wall["wall"]]
+    reveals = [row for row in own if _is_reveal(ends_of(row), line_m, along)]
+    rows.faces = [row for row in rows.faces if row not in reveals]
+    if half_m > 0 or wall["face_left"] >= 0:
         add_face(rows, wall["wall"], line_m, half_m)
-    if wall["face_right"] >= 0:
+    if half_m > 0 or wall["face_right"] >= 0:
         add_face(rows, wall["wall"], line_m[::-1], half_m)
     return wall
+
+
+def _is_reveal(face_m: FloatArray, opening_m: FloatArray, along: FloatArray) -> bool:
+    """Return whether a face (2, 2) is across a wall at an end of an opening (2, 2) of it."""
+    way_m = face_m[1] - face_m[0]
+    is_across = abs(float(way_m @ along)) < np.hypot(*way_m) / 2
+    return bool(is_across and np.abs((face_m.mean(axis=0) - opening_m) @ along).min() <= END_M)
 
 
 def add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:

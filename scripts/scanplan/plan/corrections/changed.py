@@ -173,12 +173,13 @@ def _move_wall(rows: PlanRows, wall: Row, line_m: FloatArray) -> None:
 
 def _set_thickness(rows: PlanRows, wall: Row, thickness_m: float) -> None:
     """Give a wall a thickness: around its middle, or behind the only side that was seen."""
-    if np.isfinite(wall["thickness_m"]):
-        _shift(rows, wall, 0.0, thickness_m)
-        return
     is_seen_from_left = wall["face_left"] >= 0
-    side = -1.0 if is_seen_from_left else 1.0
-    _shift(rows, wall, side * thickness_m / 2, thickness_m)
+    is_single = is_seen_from_left != (wall["face_right"] >= 0)
+    is_known = np.isfinite(wall["thickness_m"])
+    side = (-1.0 if is_seen_from_left else 1.0) * (is_single or not is_known)
+    _shift(rows, wall, side * (thickness_m / 2 - added.half_m_of(wall)), thickness_m)
+    if is_known:
+        return
     line_m = added.ends_of(wall)
     number = added.add_face(
         rows, wall["wall"], line_m[::-1] if is_seen_from_left else line_m, thickness_m / 2
@@ -191,13 +192,14 @@ def _set_thickness(rows: PlanRows, wall: Row, thickness_m: float) -> None:
 def _shift(rows: PlanRows, wall: Row, off_m: float, thickness_m: float) -> None:
     """Move the line of a wall to its left, with its openings, and give it a thickness.
 
-    Faces of a wall that keeps its line move with its sides.
+    Faces of a wall of known thickness move with its sides.
     """
-    line_m = added.ends_of(wall)
+    line_m = added.ends_of(wall) + off_m * _left(added.ends_of(wall))
+    is_known = np.isfinite(wall["thickness_m"]) and np.isfinite(thickness_m)
     left = _left(line_m)
     for row in (wall, *_openings_of(rows, wall)):
         row |= added.end_columns(added.ends_of(row) + off_m * left) | {"thickness_m": thickness_m}
-    for face in _faces_of(rows, wall) if off_m == 0 else []:
+    for face in _faces_of(rows, wall) if is_known else []:
         across_m = (added.ends_of(face) - line_m[0]) @ left
         by_m = np.sign(across_m) * thickness_m / 2 - across_m
         face |= added.end_columns(added.ends_of(face) + by_m[:, None] * left)

@@ -175,20 +175,23 @@ class Scene:
     def surfaces_m(self) -> FloatArray:
         """All lines (k, 2, 2) that a drawn face is right at.
 
-        Faces, those outside with them; sides of columns; and both sides of what is wall at another
-        height than the faces are cut at: of parapets, and below sills.
+        Faces, those outside with them; sides of columns; and what is seen at another height than
+        the faces are cut at: both sides of parapets, and of walls below sills, and reveals there.
         """
         low = self.height_m < LOW_WALL_M
         sills = self.openings.sill_m >= PARAPET_M
+        below_m = _both_sides_m(
+            self.openings.lines_m[sills],
+            np.repeat(self.openings.thickness_m[sills, None], 2, axis=1),
+        )
         parts = [
             self.inner_m,
             self.outer_m,
             *map(outline_sides_m, self.columns),
             *_both_sides_m(self.walls_m[low], self.thickness_m[low]),
-            *_both_sides_m(
-                self.openings.lines_m[sills],
-                np.repeat(self.openings.thickness_m[sills, None], 2, axis=1),
-            ),
+            *below_m,
+            # from one side to the other at both ends: reveals
+            np.stack(below_m, axis=2).reshape(-1, 2, 2),
         ]
         return np.concatenate([no_lines(), *parts])
 
