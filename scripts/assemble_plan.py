@@ -85,10 +85,8 @@ def assemble_plan(
         find_floor = workers.begin_in_thread(
             free_space.find_seen_floor, retained, sensors_m, threads=threads
         )
-    find_rays = functools.partial(
-        fronts.gather_dense_rays, store.scans, registered, planar=store.planar, threads=threads
-    )
-    others = planning.OtherScans(find_floor, find_rays)
+    dense = fronts.DenseScans(store.scans, registered, store.planar, threads=threads)
+    others = planning.OtherScans(find_floor, dense)
     limits = planning.make_plan_settings(settings)
     chosen = planning.ChosenScans.of_registered(segments, rays, registered, rows)
     # sums that a library shares out among cores differ in their last digits

@@ -208,13 +208,8 @@ def _make_plan(found: Results, rows: IntArray, scan_ids: IntArray, settings: Set
     if found.store.planar:
         retained = found.store.scans(found.registered.scan_ids)
         find_floor = functools.partial(free_space.find_seen_floor, retained, sensors_m)
-    find_rays = functools.partial(
-        fronts.gather_dense_rays,
-        found.store.scans,
-        found.registered,
-        planar=found.store.planar,
-    )
-    others = planning.OtherScans(find_floor, find_rays)
+    dense = fronts.DenseScans(found.store.scans, found.registered, found.store.planar)
+    others = planning.OtherScans(find_floor, dense)
     segments = {column: values[used] for column, values in found.walls.items()}
     plan = planning.make_plan(
         planning.ChosenScans.of_registered(segments, rays, found.registered, rows),

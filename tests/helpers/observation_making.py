@@ -33,7 +33,6 @@ def observation(line, occupied=(), free=(), low=(), *, planar=False):
         occupied_scan=scan.astype(np.int64),
         free_m=free_m,
         free_z_m=free_z_m,
-        free_scan=np.zeros(len(free_m), np.int64),
         low_m=low_m,
         low_z_m=low_z_m,
         planar=planar,

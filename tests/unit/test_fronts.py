@@ -84,7 +84,8 @@ def look(pane, things):
 
 
 def find(pane, things):
-    return fronts.find_fronts(WALLS, look(pane, things), np.array(WAY_M))
+    rays = look(pane, things)
+    return fronts.find_fronts(WALLS, lambda most: [rays], np.array(WAY_M))
 
 
 @pytest.fixture(scope="module")
@@ -125,7 +126,7 @@ def test_what_answers_from_every_side_is_no_front():
 
 
 def test_answers_of_walls_are_no_rows():
-    assert find_front_rows(WALLS, look(shapely.LineString(), shapely.LineString())) == []
+    assert find_front_rows(WALLS, [look(shapely.LineString(), shapely.LineString())]) == []
 
 
 def test_one_scan_of_each_place_is_enough():
@@ -145,10 +146,15 @@ def test_in_space_a_scan_of_each_place_gives_the_beams_that_may_come_square():
         for number in scan_ids.tolist():
             yield number, poses[number, :3, 3] + np.column_stack([0 * up_m + 5, 0 * up_m, up_m])
 
-    rays, up = fronts.gather_dense_rays(read_scans, known, planar=False)
+    in_space = fronts.DenseScans(read_scans, known, planar=False)
+    ((rays, up),) = in_space.gather_rays(0.0)
     assert rays.scan_ids.tolist() == [0, 2]
     assert np.diff(rays.first).tolist() == [3, 3]
     np.testing.assert_allclose(up @ [0, 0, 1], np.cos(np.radians([0, 5])))
-    flat, _ = fronts.gather_dense_rays(read_scans, known, planar=True)
+    parts = [part for part, _ in in_space.gather_rays(0.0, most=1)]
+    assert [part.scan_ids.tolist() for part in parts] == [[0], [2]]
+    assert np.array_equal(np.concatenate([part.xyz_m for part in parts]), rays.xyz_m)
+    in_plane = fronts.DenseScans(read_scans, known, planar=True)
+    ((flat, _),) = in_plane.gather_rays(0.0, most=1)
     assert flat.scan_ids.tolist() == [0, 1, 2]
     assert len(flat.xyz_m) == 15

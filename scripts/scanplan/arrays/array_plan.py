@@ -272,19 +272,14 @@ def assemble_plan(placed: Placed, name: str, threads: int) -> ArrayPlan:
     )
     flat = parts[-1]
     find_seen = partial(free_space.find_seen_floor, flat.scans(), flat.sensors_m)
-    find_dense = partial(
-        fronts.gather_dense_rays,
-        placed.scans,
-        placed.known,
-        planar=placed.planar,
-        left_out=placed.left_out,
-        threads=threads,
+    dense = fronts.DenseScans(
+        placed.scans, placed.known, placed.planar, left_out=placed.left_out, threads=threads
     )
     plan = planning.make_plan(
         planning.ChosenScans.of_registered(found, rays, placed.known, rows),
         placed.known.map_from_sensor[:, :2, 3],
         planning.make_plan_settings(stage_settings.select_plan(placed.settings)),
-        others=planning.OtherScans(find_seen if flat.planar else None, find_dense),
+        others=planning.OtherScans(find_seen if flat.planar else None, dense),
         threads=threads,
     )
     messages.check_plan(_ORIGIN, plan, n_segments, len(rows))

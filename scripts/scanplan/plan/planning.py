@@ -1,7 +1,7 @@
 """From wall segments and the points of the chosen scans to a floor plan."""
 
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -19,7 +19,7 @@ from scanplan.plan.furniture.leaves import Leaf
 from scanplan.plan.furniture.pieces import Piece, find_pieces, pieces_in_rooms
 from scanplan.plan.furniture.pillars import cut_off_pillars
 from scanplan.plan.model.designed_walls import DesignedWalls
-from scanplan.plan.model.fronts import find_fronts
+from scanplan.plan.model.fronts import DenseScans, find_fronts
 from scanplan.plan.model.likely_openings import settle_openings
 from scanplan.plan.model.roofs import Roof
 from scanplan.plan.model.surfaces import label_surfaces
@@ -133,14 +133,12 @@ class OtherScans:
     find_floor : callable, optional
         Returns the floor that all planar ones saw: rooms are made of it. By default it is what the
         chosen ones saw.
-    find_rays : callable, optional
-        Returns rays from all along the way, above a floor `floor_z_m`, and the axes of their
-        sensors, see `fronts.gather_dense_rays`: panes are found by them. By default they are the
-        chosen ones'.
+    dense : DenseScans, optional
+        Panes are found by them: by default by the chosen ones.
     """
 
     find_floor: Callable[[], BaseGeometry] | None = None
-    find_rays: Callable[..., tuple[RaySet, FloatArray]] | None = None
+    dense: DenseScans | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,15 +237,16 @@ def make_plan(
         threads=threads,
     )
 
-    def find_dense() -> RaySet:
-        if others.find_rays is None:
-            return rays
-        dense, up = others.find_rays(floor_z_m=rays.floor_z_m)
-        dense = range_bias.remove_range_bias(dense, errors_m, up, threads, in_place=True)
-        return dense.with_up(up)
+    def read_dense(most: int | None) -> Iterator[RaySet]:
+        if others.dense is None:
+            yield rays
+            return
+        for dense, up in others.dense.gather_rays(rays.floor_z_m, most):
+            moved = range_bias.remove_range_bias(dense, errors_m, up, threads, in_place=True)
+            yield moved.with_up(up)
 
     survey = _Survey(
-        settings, rays, find_dense, track_m, find_free, others.find_floor, designed, threads
+        settings, rays, read_dense, track_m, find_free, others.find_floor, designed, threads
     )
     surfaces = survey.find_surfaces(segments)
     spaces = survey.find_spaces(surfaces)
@@ -356,8 +355,8 @@ class _Survey:
     settings : PlanSettings
     rays : ray_set.RaySet
         Of the chosen scans, their ranges set right.
-    find_dense : callable
-        Returns those that panes are found by, likewise: they are not kept, as they are many.
+    read_dense : callable
+        Returns those that panes are found by, likewise, of so many scans at once, or of all.
     track_m : (k, 2) float64
     find_free : callable
         Returns `views` and `floor`, for which lines need not wait.
@@ -369,7 +368,7 @@ class _Survey:
 
     settings: PlanSettings
     rays: RaySet
-    find_dense: Callable[[], RaySet]
+    read_dense: Callable[[int | None], Iterator[RaySet]]
     track_m: FloatArray
     find_free: Callable[[], _Free]
     find_seen: Callable[[], BaseGeometry] | None
@@ -414,7 +413,7 @@ class _Survey:
             self.seen_floor,
         )
         labelled = label_surfaces(walls, evidence, max_door_m=self.settings.openings.max_door_m)
-        glass = find_fronts(labelled.walls, self.find_dense(), self.track_m)
+        glass = find_fronts(labelled.walls, self.read_dense, self.track_m)
         glass_walls = room_bounds.find_glass_walls(
             labelled.walls,
             glass.panes,

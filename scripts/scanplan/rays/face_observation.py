@@ -49,10 +49,9 @@ class FaceObservation:
     line : lines.Line
     occupied_m, occupied_off_m, occupied_z_m : (h,) float64
         Returns at the surface: along the line, before it, above the floor.
-    occupied_scan : (h,) int64
+    occupied_scan : (h,) int32
     free_m, free_z_m : (p,) float64
         Where rays go through it.
-    free_scan : (p,) int64
     low_m, low_z_m : (f,) float64
         Returns at it that are too low for a wall: a sill, or clutter.
     planar : bool
@@ -67,7 +66,6 @@ class FaceObservation:
     occupied_scan: IntArray
     free_m: FloatArray
     free_z_m: FloatArray
-    free_scan: IntArray
     low_m: FloatArray
     low_z_m: FloatArray
     planar: bool
@@ -130,10 +128,9 @@ def observe_face(
         occupied_m=face.along_m[occupied],
         occupied_off_m=-face.behind_m[occupied],
         occupied_z_m=face.height_m[occupied],
-        occupied_scan=face.scan[occupied],
+        occupied_scan=face.scan[occupied].astype(np.int32),
         free_m=face.along_m[free],
         free_z_m=face.height_m[free],
-        free_scan=face.scan[free],
         low_m=face.along_m[low],
         low_z_m=face.height_m[low],
         planar=rays.planar,
@@ -159,7 +156,6 @@ def look_beyond(
         observation,
         free_m=face.along_m[free],
         free_z_m=face.height_m[free],
-        free_scan=face.scan[free],
         low_end_m=low_m,
         high_end_m=high_m,
     )

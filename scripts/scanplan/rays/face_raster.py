@@ -26,7 +26,7 @@ Places = tuple[FloatArray, FloatArray]
 
 
 class Cells(NamedTuple):
-    """Column and row of the cell that each ray is in, (n,) int64."""
+    """Column and row of the cell that each ray is in, (n,) int32: they are kept of all rays."""
 
     column: IntArray
     row: IntArray
@@ -74,7 +74,7 @@ class FaceRaster:
 
     def column_of(self, along_m: FloatArray) -> IntArray:
         """Return the columns (n,) of places, the first or the last for those beyond."""
-        column = ((along_m - self.first_m) / CELL_M).astype(np.int64)
+        column = ((along_m - self.first_m) / CELL_M).astype(np.int32)
         return np.minimum(np.maximum(column, 0), self.n_columns - 1)
 
     def between(self, low_m: float, high_m: float) -> slice:
@@ -160,7 +160,7 @@ class FaceRaster:
 
     def _cells_of(self, places: Places) -> Cells:
         along_m, height_m = places
-        row = np.maximum(height_m / CELL_M, 0).astype(np.int64)
+        row = np.maximum(height_m / CELL_M, 0).astype(np.int32)
         return Cells(self.column_of(along_m), 0 * row if self.planar else row)
 
 

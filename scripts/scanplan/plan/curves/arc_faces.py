@@ -125,7 +125,6 @@ def observe_points(
         occupied_scan=scan[order],
         free_m=nothing,
         free_z_m=nothing,
-        free_scan=np.empty(0, np.int64),
         low_m=nothing,
         low_z_m=nothing,
         planar=planar,

@@ -5,7 +5,7 @@ What many scans show of it lies on one line.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -84,21 +84,22 @@ class _Run:
     high_m: float
 
 
-def find_front_rows(walls: Sequence[PlanWall], rays: RaySet) -> list[FrontRow]:
+def find_front_rows(walls: Sequence[PlanWall], parts: Iterable[RaySet]) -> list[FrontRow]:
     """Return rows of answers along the directions that walls have, and across.
 
     Parameters
     ----------
     walls : sequence of plan_wall.PlanWall
         What answers there, and in their windows, is theirs.
-    rays : ray_set.RaySet
+    parts : iterable of ray_set.RaySet
+        Rays of some scans after those of others.
 
     Returns
     -------
     list of FrontRow
         Those that answer from near first.
     """
-    answers = _find_answers(walls, rays)
+    answers = _find_answers(walls, parts)
     rows = [row for direction in _find_directions(walls) for row in _find_rows(answers, direction)]
     return sorted(rows, key=lambda row: float(np.median(np.hypot(*row.answers.way_m.T))))
 
@@ -114,7 +115,7 @@ def extend_row(row: FrontRow, others: intersections.SpanArrays) -> FrontRow:
     )
 
 
-def _find_answers(walls: Sequence[PlanWall], rays: RaySet) -> Answers:
+def _find_answers(walls: Sequence[PlanWall], parts: Iterable[RaySet]) -> Answers:
     """Return the level returns that are of no wall, nor of its windows."""
     # panes of windows stand behind the face of a facade whose other side nobody saw
     strips = wall_ground.wall_strips(walls, DEEP_M)
@@ -122,13 +123,14 @@ def _find_answers(walls: Sequence[PlanWall], rays: RaySet) -> Answers:
     shapely.prepare(ground)
     found: list[tuple[FloatArray, FloatArray]] = [(np.empty((0, 2)), np.empty((0, 3)))]
     # scan by scan: what is worked out of all rays would take more memory than they do
-    for rows, (_, way_m) in zip(rays.rows, rays.headings(), strict=True):
-        xyz_m = rays.xyz_m[rows]
-        length_m, height_m = np.hypot(*way_m[:, :2].T), xyz_m[:, 2] - rays.ground_z_m
-        is_kept = (length_m <= _FAR_M) & (height_m > SKIRTING_M) & (height_m < _TOP_M)
-        is_kept &= np.abs(way_m[:, 2]) <= SQUARE * length_m
-        is_kept[is_kept] = ~shapely.contains_xy(ground, *xyz_m[is_kept, :2].T)
-        found.append((xyz_m[is_kept, :2], way_m[is_kept]))
+    for rays in parts:
+        for rows, (_, way_m) in zip(rays.rows, rays.headings(), strict=True):
+            xyz_m = rays.xyz_m[rows]
+            length_m, height_m = np.hypot(*way_m[:, :2].T), xyz_m[:, 2] - rays.ground_z_m
+            is_kept = (length_m <= _FAR_M) & (height_m > SKIRTING_M) & (height_m < _TOP_M)
+            is_kept &= np.abs(way_m[:, 2]) <= SQUARE * length_m
+            is_kept[is_kept] = ~shapely.contains_xy(ground, *xyz_m[is_kept, :2].T)
+            found.append((xyz_m[is_kept, :2], way_m[is_kept]))
     xy_m, way_m = (np.concatenate(of) for of in zip(*found, strict=True))
     return Answers(xy_m, np.ascontiguousarray(way_m[:, :2]), way_m[:, 2])
 

@@ -21,6 +21,7 @@ from scanplan.types import BoolArray, FloatArray, IntArray
 
 _EVERY_M = 0.25  # scans nearer to one another show the same of a pane that is 1 m away
 _EVERY_IN_SPACE_M = 0.5  # and of one that is 2 m away: beams above and below show more of it
+_AT_ONCE = 20  # scans: few, as their points are in memory beside their rays
 _THROUGH = 0.5  # of the rays to a row: what more of come through panes is outside, or mirrored
 
 
@@ -40,53 +41,64 @@ class Fronts:
     ways_m: list[FloatArray]
 
 
-def gather_dense_rays(
-    read_scans: Callable[[IntArray], Iterable[tuple[int, FloatArray]]],
-    registered: RegisteredScans,
-    *,
-    planar: bool,
-    left_out: Mapping[int, BoolArray] | None = None,
-    floor_z_m: float | None = None,
-    threads: int = 1,
-) -> tuple[RaySet, FloatArray]:
-    """Return rays from all along the way, of one scan of each place.
+@dataclass(frozen=True, eq=False)
+class DenseScans:
+    """Scans from all along the way, one of each place.
 
-    Of scans in space they are those of the beams that go nearly level: no others come square to
-    what stands upright.
-
-    Parameters
+    Attributes
     ----------
-    read_scans : callable
+    read : callable
         Returns `scan_id` and points (n, 3) in the map frame of some scans.
     registered : registered_scans.RegisteredScans
         All retained scans.
     planar : bool
         Whether they lie in one plane.
-    left_out, floor_z_m
+    left_out : dict of int to (72,) bool, optional
         See `ray_set.gather_rays`.
-
-    Returns
-    -------
-    rays : ray_set.RaySet
-    up : (s, 3) float64
-        The axis that the beams of each of its scans are inclined to, in the map frame.
+    threads : int
+        Cores to use.
     """
-    poses = registered.map_from_sensor
-    rows = choose_scans(poses[:, :2, 3], planar=planar)
-    scan_ids = registered.scan_ids[rows]
-    sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
-    scans = read_scans(scan_ids)
-    if not planar:
-        scans = ((of, xyz_m[_are_level(xyz_m - sensors_m[of])]) for of, xyz_m in scans)
-    rays = gather_rays(
-        scans,
-        sensors_m,
-        planar=planar,
-        left_out=left_out,
-        floor_z_m=floor_z_m,
-        threads=threads,
-    )
-    return rays, poses[rows, :3, 2]
+
+    read: Callable[[IntArray], Iterable[tuple[int, FloatArray]]]
+    registered: RegisteredScans
+    planar: bool
+    left_out: Mapping[int, BoolArray] | None = None
+    threads: int = 1
+
+    def gather_rays(
+        self, floor_z_m: float, most: int | None = None
+    ) -> Iterator[tuple[RaySet, FloatArray]]:
+        """Yield rays of all scans, or of so many at once: of those in one plane always of all.
+
+        Of scans in space they are those of the beams that go nearly level: no others come square to
+        what stands upright.
+
+        Yields
+        ------
+        rays : ray_set.RaySet
+            Above a floor `floor_z_m`.
+        up : (s, 3) float64
+            The axis that the beams of each of its scans are inclined to, in the map frame.
+        """
+        poses = self.registered.map_from_sensor
+        chosen = choose_scans(poses[:, :2, 3], planar=self.planar)
+        step = len(chosen) if self.planar or most is None else most
+        for begin in range(0, max(len(chosen), 1), max(step, 1)):
+            rows = chosen[begin : begin + step]
+            scan_ids = self.registered.scan_ids[rows]
+            sensors_m = dict(zip(scan_ids.tolist(), poses[rows, :3, 3], strict=True))
+            scans = self.read(scan_ids)
+            if not self.planar:
+                scans = _choose_level(scans, sensors_m)
+            rays = gather_rays(
+                scans,
+                sensors_m,
+                planar=self.planar,
+                left_out=self.left_out,
+                floor_z_m=floor_z_m,
+                threads=self.threads,
+            )
+            yield rays, poses[rows, :3, 2]
 
 
 def choose_scans(sensors_m: FloatArray, *, planar: bool) -> IntArray:
@@ -95,12 +107,21 @@ def choose_scans(sensors_m: FloatArray, *, planar: bool) -> IntArray:
     return np.sort(np.unique(place, axis=0, return_index=True)[1])
 
 
-def _are_level(way_m: FloatArray) -> BoolArray:
-    """Return which ways (n, 3) of rays lead up or down no more than those that come square."""
-    return np.abs(way_m[:, 2]) <= SQUARE * np.hypot(way_m[:, 0], way_m[:, 1])
+def _choose_level(
+    scans: Iterable[tuple[int, FloatArray]], sensors_m: Mapping[int, FloatArray]
+) -> Iterator[tuple[int, FloatArray]]:
+    """Yield of each scan the points that lie up or down no more than where rays come square."""
+    for scan_id, xyz_m in scans:
+        way_m = xyz_m - sensors_m[scan_id]
+        is_level = np.abs(way_m[:, 2]) <= SQUARE * np.hypot(way_m[:, 0], way_m[:, 1])
+        yield scan_id, xyz_m[is_level]
 
 
-def find_fronts(walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray) -> Fronts:
+def find_fronts(
+    walls: Sequence[PlanWall],
+    read_rays: Callable[[int | None], Iterable[RaySet]],
+    track_m: FloatArray,
+) -> Fronts:
     """Find the fronts of glass that run as walls do, or across.
 
     Of each row of answers the labels of its line are asked. It is a front if that explains what
@@ -110,11 +131,16 @@ def find_fronts(walls: Sequence[PlanWall], rays: RaySet, track_m: FloatArray) ->
     ----------
     walls : sequence of plan_wall.PlanWall
         What stands, but for fronts.
-    rays : ray_set.RaySet
+    read_rays : callable
+        Returns the rays of so many scans at once, or of all: they are many, and most floors have no
+        row for which those of all would be needed.
     track_m : (k, 2) float64
         Where the sensor was, one place after the other.
     """
-    rows = front_rows.find_front_rows(walls, rays)
+    rows = front_rows.find_front_rows(walls, read_rays(_AT_ONCE))
+    if not rows:
+        return Fronts([], [])
+    (rays,) = read_rays(None)
     spans = intersections.stack_spans([*walls, *rows])
     drawn = [pane for wall in walls for pane in glass_views.draw_panes(wall)]
     fronts = Fronts([], [])

@@ -21,7 +21,7 @@ NEARLY = 0.3
 """Least probability of what was nearly drawn: of such things a fourth is there (tuning half)."""
 _MAY_BE = (priors.DOOR, priors.WINDOW, priors.GLASS, priors.SHUT)
 _N_KINDS = len(priors.KINDS)
-_PAIRS_AT_ONCE = 50_000  # of cuts: some 10 MB
+_PAIRS_AT_ONCE = 5_000  # of cuts: some 10 MB for each of all labels together
 _Reduction = Callable[..., FloatArray]
 
 

@@ -205,7 +205,7 @@ def _count_side(
 def _sort_ends(face: FaceRays, deep_m: float, *, is_only: bool) -> IntArray:
     """Return how each ray ends; -1 of one that says nothing."""
     behind_m, is_facing = face.behind_m, face.is_facing
-    end = np.full(len(behind_m), -1)
+    end = np.full(len(behind_m), -1, np.int8)
     end[is_facing & (behind_m >= -AT_M)] = BEYOND
     end[is_facing & (behind_m >= -AT_M) & (behind_m <= deep_m)] = DEEP
     end[is_facing & (behind_m >= -AT_M) & (behind_m <= _SHALLOW_M)] = SHALLOW
