@@ -194,6 +194,7 @@ rule export_presentation:
         "logs/{dataset}/export_presentation.log",
     benchmark:
         "benchmarks/{dataset}/export_presentation.tsv"
+    priority: 1
     threads: 1
     resources:
         mem_mb=grown(mem_mb=1500),
