@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from scanplan.recordings import clocks, topics
-from scanplan.recordings.small_messages import PoseSample, SmallMessages, TransformSample
+from scanplan.recordings.small_messages import Samples, SmallMessages
 from scanplan.stage import log
 from scanplan.types import IntArray
 
@@ -47,12 +47,10 @@ def align_stamps(
     measure_sweep_ns : callable
         Returns how long after its stamp a cloud's last point is measured: none is received before.
     """
-    samples: Sequence[PoseSample | TransformSample] = index.poses.get(source.name, [])
+    samples = [index.poses.get(source.name, Samples())]
     if source.msgtype in topics.TRANSFORMS:
-        moving = [found for (static, *_), found in index.transforms.items() if not static]
-        samples = [sample for found in moving for sample in found]
-    t_ns = np.array([sample.t_ns for sample in samples], np.int64)
-    receive_ns = np.array([sample.receive_ns for sample in samples], np.int64)
+        samples = [found for (static, *_), found in index.transforms.items() if not static]
+    t_ns, receive_ns = np.hstack([Samples().times_ns, *(found.times_ns for found in samples)])
     stamps_ns = index.stamps_ns
     if len(t_ns) == 0:
         return AlignedStamps(stamps_ns)

@@ -8,7 +8,7 @@ import numpy as np
 from scanplan.errors import StageError
 from scanplan.geometry.tolerances import SHORTEST_M
 from scanplan.recordings import clocks, frame_edges, tf_tree, topics
-from scanplan.recordings.small_messages import TransformKey, TransformSample
+from scanplan.recordings.small_messages import Samples, TransformKey
 from scanplan.stage import log
 from scanplan.types import IntArray
 
@@ -45,7 +45,7 @@ def configured_extrinsics(base_from_sensor: Sequence[float]) -> list[frame_edges
 
 
 def make_transform_edges(
-    samples: Mapping[TransformKey, Sequence[TransformSample]],
+    samples: Mapping[TransformKey, Samples],
     cloud_t_ns: IntArray,
     cloud_receive_ns: IntArray,
 ) -> list[frame_edges.FrameEdge]:
@@ -53,8 +53,6 @@ def make_transform_edges(
 
     Parameters
     ----------
-    samples : dict of TransformKey to list of TransformSample
-        In the order of recording.
     cloud_t_ns, cloud_receive_ns : (m,) int64, m >= 1
         Stamps and times of receipt of the clouds, for `clocks.estimate_ahead_ns`.
 
@@ -84,14 +82,14 @@ def make_transform_edges(
 
 
 def _make_static_edge(
-    parent: str, child: str, recorded: Sequence[TransformSample]
+    parent: str, child: str, recorded: Samples
 ) -> tuple[frame_edges.FrameEdge | None, dict[str, int]]:
     """Make an edge of the last valid transform: their order stands in for their stamps.
 
     Those that differ by less than a millimetre were printed with fewer digits once.
     """
-    order = np.arange(1, len(recorded) + 1)
-    rows = [sample.row for sample in recorded]
+    rows = recorded.rows
+    order = np.arange(1, len(rows) + 1)
     edge, faults = frame_edges.make_track_edge(parent, child, order, order, rows)
     if edge is None:
         return None, faults
@@ -101,17 +99,15 @@ def _make_static_edge(
 def _make_moving_edge(
     parent: str,
     child: str,
-    recorded: Sequence[TransformSample],
+    recorded: Samples,
     cloud_t_ns: IntArray,
     cloud_receive_ns: IntArray,
 ) -> tuple[frame_edges.FrameEdge | None, dict[str, int]]:
-    t_ns = np.array([sample.t_ns for sample in recorded], np.int64)
-    receive_ns = np.array([sample.receive_ns for sample in recorded], np.int64)
-    rows = [sample.row for sample in recorded]
+    t_ns, receive_ns = recorded.times_ns
     ahead_ns = clocks.estimate_ahead_ns(t_ns, receive_ns, cloud_t_ns, cloud_receive_ns)
     if ahead_ns:
         log.log_line(clocks.describe_lead(f"tf {parent} -> {child}", ahead_ns))
-    return frame_edges.make_track_edge(parent, child, t_ns - ahead_ns, receive_ns, rows)
+    return frame_edges.make_track_edge(parent, child, t_ns - ahead_ns, receive_ns, recorded.rows)
 
 
 def find_extrinsics(

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 from contextlib import suppress
 
-import numpy as np
-
 from scanplan.errors import StageError
 from scanplan.recordings import clocks, frame_edges, tf_tree, topics
 from scanplan.recordings.extrinsics import better_poses_hint, find_extrinsics, make_transform_edges
-from scanplan.recordings.small_messages import PoseSample, SmallMessages
+from scanplan.recordings.small_messages import Samples, SmallMessages
 from scanplan.recordings.survey_protocol import NamedChain
 from scanplan.stage import log
 from scanplan.types import IntArray
@@ -140,9 +138,8 @@ class PoseChains:
 
     def _track(self, source: topics.Topic) -> frame_edges.FrameEdge:
         """Return the poses of a topic as an edge from their frame to what they are of."""
-        samples = self._index.poses.get(source.name, [])
-        parents = sorted({sample.parent for sample in samples})
-        children = sorted({sample.child for sample in samples})
+        samples = self._index.poses.get(source.name, Samples())
+        parents, children = sorted(samples.parents), sorted(samples.children)
         if len(parents) > 1 or len(children) > 1:
             frames = ", ".join(sorted({*parents, *children} - {""}))
             raise StageError(
@@ -153,7 +150,7 @@ class PoseChains:
             parents[0] if parents else "",
             self._base_frame or (children[0] if children else ""),
             *self._possible_stamps(source, samples),
-            [sample.row for sample in samples],
+            samples.rows,
         )
         faults = clocks.summarise_faults(counts)
         if faults:
@@ -166,11 +163,9 @@ class PoseChains:
             )
         return track
 
-    def _possible_stamps(
-        self, source: topics.Topic, samples: Sequence[PoseSample]
-    ) -> tuple[IntArray, IntArray]:
+    def _possible_stamps(self, source: topics.Topic, samples: Samples) -> tuple[IntArray, IntArray]:
         """Return stamps and times of receipt, (n,) int64; no pose is received before it was."""
-        t_ns, receive_ns = _stamps_of(samples)
+        t_ns, receive_ns = samples.times_ns
         if len(t_ns) == 0:
             return t_ns, receive_ns
         ahead_ns = clocks.estimate_ahead_ns(
@@ -202,10 +197,3 @@ class PoseChains:
 
 def _is_moving(edges: Sequence[frame_edges.FrameEdge]) -> bool:
     return any(edge.t_ns is not None for edge in edges)
-
-
-def _stamps_of(samples: Sequence[PoseSample]) -> tuple[IntArray, IntArray]:
-    """Return the stamps and the times of receipt, (n,) int64."""
-    t_ns = [sample.t_ns for sample in samples]
-    receive_ns = [sample.receive_ns for sample in samples]
-    return np.array(t_ns, np.int64), np.array(receive_ns, np.int64)

@@ -2,7 +2,7 @@
 
 from array import array
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,25 +11,44 @@ from scanplan.errors import StageError
 from scanplan.recordings import clocks, messages, topics
 from scanplan.recordings.bags import Bag, Connection
 from scanplan.stage import log
-from scanplan.types import IntArray
+from scanplan.types import FloatArray, IntArray
 
 
-class PoseSample(NamedTuple):
-    """A recorded pose: `row` is x, y, z, qx, qy, qz, qw of `child` in `parent`."""
+class Samples:
+    """Recorded poses or transforms in the order of recording, by columns.
 
-    t_ns: int
-    receive_ns: int
-    row: "array[float]"
-    parent: str
-    child: str
+    An object for each would take four times the memory: there are a dozen for each scan.
 
+    Attributes
+    ----------
+    parents, children : set of str
+        The frames that they are given in, and those that they are of.
+    """
 
-class TransformSample(NamedTuple):
-    """A recorded transform: `row` is x, y, z, qx, qy, qz, qw."""
+    def __init__(self) -> None:
+        self.parents: set[str] = set()
+        self.children: set[str] = set()
+        self._times_ns = array("q")
+        self._rows = array("d")
 
-    t_ns: int
-    receive_ns: int
-    row: "array[float]"
+    def add(
+        self, t_ns: int, receive_ns: int, row: Iterable[float], parent: str, child: str
+    ) -> None:
+        """Add one: `row` is x, y, z, qx, qy, qz, qw of `child` in `parent`."""
+        self._times_ns.extend((t_ns, receive_ns))
+        self._rows.extend(row)
+        self.parents.add(parent)
+        self.children.add(child)
+
+    @property
+    def times_ns(self) -> IntArray:
+        """Stamps and times of receipt, (2, n) int64."""
+        return np.array(self._times_ns, np.int64).reshape(-1, 2).T.copy()
+
+    @property
+    def rows(self) -> FloatArray:
+        """What `add` was given, (n, 7) float64."""
+        return np.array(self._rows, float).reshape(-1, 7)
 
 
 class _CloudSample(NamedTuple):
@@ -47,9 +66,9 @@ class SmallMessages:
 
     Attributes
     ----------
-    poses : dict of str to list of PoseSample
-        By topic, in the order of recording.
-    transforms : dict of TransformKey to list of TransformSample
+    poses : dict of str to Samples
+        By topic.
+    transforms : dict of TransformKey to Samples
     stamps_ns, cloud_receive_ns : (n,) int64
         Of the clouds.
     sensor_frame : str
@@ -61,11 +80,11 @@ class SmallMessages:
 
     def __init__(self, unit_m: float = 1.0) -> None:
         self._unit_m = unit_m
-        self.poses: dict[str, list[PoseSample]] = {}
-        self.transforms: dict[TransformKey, list[TransformSample]] = {}
+        self.poses: dict[str, Samples] = {}
+        self.transforms: dict[TransformKey, Samples] = {}
         self._clouds: list[_CloudSample] = []
         self._n_odd_covariances: Counter[str] = Counter()
-        self._paths: dict[str, dict[int, PoseSample]] = {}
+        self._paths: dict[str, dict[int, tuple[list[float], str]]] = {}
 
     def add_cloud(self, t_ns: int, frame: str, receive_ns: int) -> None:
         """Add the stamp of a cloud."""
@@ -74,7 +93,7 @@ class SmallMessages:
     def add_pose(self, topic: str, message: Any, receive_ns: int) -> None:
         """Add a pose: any of the messages that hold one."""
         pose = message.pose.pose if hasattr(message.pose, "pose") else message.pose
-        sample = PoseSample(
+        self.poses.setdefault(topic, Samples()).add(
             messages.stamp_to_ns(message.header.stamp),
             receive_ns,
             self._read_row(pose),
@@ -83,7 +102,6 @@ class SmallMessages:
         )
         if not np.isfinite(getattr(message.pose, "covariance", 0)).all():
             self._n_odd_covariances[topic] += 1
-        self.poses.setdefault(topic, []).append(sample)
 
     def add_path(self, topic: str, message: Any) -> None:
         """Add the poses of a path; a later message says better where one was."""
@@ -91,9 +109,12 @@ class SmallMessages:
         known = self._paths.setdefault(topic, {})
         for item in message.poses:
             t_ns = messages.stamp_to_ns(item.header.stamp)
-            # when a pose was first received is not known
-            known[t_ns] = PoseSample(t_ns, t_ns, self._read_row(item.pose), parent, "")
-        self.poses[topic] = [known[t_ns] for t_ns in sorted(known) if t_ns]
+            known[t_ns] = self._read_row(item.pose), parent
+        self.poses[topic] = Samples()
+        for t_ns in sorted(known):
+            if t_ns:
+                # when a pose was first received is not known
+                self.poses[topic].add(t_ns, t_ns, *known[t_ns], "")
 
     def add_transforms(self, message: Any, receive_ns: int, static: bool) -> None:
         """Add the transforms of a TFMessage."""
@@ -101,13 +122,12 @@ class SmallMessages:
             parent = messages.clean_frame_name(item.header.frame_id)
             child = messages.clean_frame_name(item.child_frame_id)
             t_ns = messages.stamp_to_ns(item.header.stamp)
-            sample = TransformSample(t_ns, receive_ns, self._read_row(item.transform))
-            self.transforms.setdefault((static, parent, child), []).append(sample)
+            samples = self.transforms.setdefault((static, parent, child), Samples())
+            samples.add(t_ns, receive_ns, self._read_row(item.transform), parent, child)
 
-    def _read_row(self, pose: Any) -> "array[float]":
+    def _read_row(self, pose: Any) -> list[float]:
         row = messages.pose_to_row(pose)
-        # a third of a list's memory: there are a dozen for each scan of a long recording
-        return array("d", [*(self._unit_m * value for value in row[:3]), *row[3:]])
+        return [*(self._unit_m * value for value in row[:3]), *row[3:]]
 
     def finish(self, where: str, cloud: topics.Topic) -> None:
         """Make arrays of the clouds' stamps, and log what is odd.
