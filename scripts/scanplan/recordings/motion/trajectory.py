@@ -22,6 +22,7 @@ from scanplan.types import Array, BoolArray, Columns, FloatArray, IntArray
 
 _ENOUGH = 0.95  # of the most covered scans: a smoother source may lack a few at the ends
 _FEWEST_STEPS = 3  # of fewer the median ratio says nothing
+_AT_ONCE = 20_000  # poses, whose matrices take 3 MB
 _AGREEMENT = 1.25  # wheels slip by less; a disconnected or misscaled source differs by more
 
 
@@ -164,14 +165,18 @@ def motion_along(
         xyz_m, quat = se3.split_pose(np.repeat(pose, 2, axis=0))
         return SensorMotion(ends_ns, xyz_m, quat, np.zeros(2, np.int32))
     known_ns = np.unique(np.concatenate(stamps))
-    pose, _, covered = frame_edges.chain_poses(edges, known_ns, max_gap_s=max_gap_s)
-    if not covered.any():
+    parts: list[tuple[FloatArray, FloatArray, IntArray]] = []
+    # a matrix of each of all of them would take more than all else that is known of a long drive
+    for some_ns in np.array_split(known_ns, -(-len(known_ns) // _AT_ONCE)):
+        pose, _, covered = frame_edges.chain_poses(edges, some_ns, max_gap_s=max_gap_s)
+        parts.append((*se3.split_pose(pose[covered]), some_ns[covered]))
+    xyz_m, quat, known_ns = (np.concatenate(of) for of in zip(*parts, strict=True))
+    if len(known_ns) == 0:
         return None
-    known_ns = known_ns[covered]
     is_gap = np.diff(known_ns) > max_gap_s * 1e9
     breaks = is_gap | _are_jumped(edges, known_ns, max_speed_m_s)
     piece = np.concatenate([[0], np.cumsum(breaks)]).astype(np.int32)
-    return SensorMotion(known_ns, *se3.split_pose(pose[covered]), piece)
+    return SensorMotion(known_ns, xyz_m, quat, piece)
 
 
 def _are_jumped(
