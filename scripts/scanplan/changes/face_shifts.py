@@ -92,10 +92,15 @@ def measure_shifts(a: Survey, b: Survey, fit: FrameFit) -> FaceShifts:
 def _are_of_others(
     faces: SeenFaces, others: SeenFaces, pairs: FacePairs, is_shifted: BoolArray
 ) -> BoolArray:
-    """Return which shifted pairs (k,) have a wall that stands, by a side of it, as another."""
+    """Return which shifted pairs (k,) are of two things.
+
+    Those that have a wall that stands, by a side of it, as another, or that are likelier a wall and
+    no wall than of one kind: neither has moved to where the other is.
+    """
     wall, other = faces.wall[pairs.a], others.wall[pairs.b]
     along = faces.along[pairs.a]
-    found = np.zeros(len(wall), bool)
+    p_wall, p_other = faces.p_wall[pairs.a], others.p_wall[pairs.b]
+    found = is_shifted & (p_wall * p_other + (1 - p_wall) * (1 - p_other) < 1 / 2)
     for row in np.flatnonzero(is_shifted).tolist():
         off_m = (pairs.middle_m - pairs.middle_m[row]) @ along[row]
         half_m, own_half_m = pairs.length_m / 2, pairs.length_m[row] / 2
@@ -104,7 +109,7 @@ def _are_of_others(
         is_beside &= np.abs(along @ along[row]) >= np.cos(_TURN_RAD)
         is_of_wall = (wall == wall[row]) & (wall >= 0)
         is_of_other = (other == other[row]) & (other >= 0)
-        found[row] = np.any(is_beside & (is_of_wall != is_of_other))
+        found[row] |= np.any(is_beside & (is_of_wall != is_of_other))
     return found
 
 

@@ -28,8 +28,9 @@ _LIKELIER = 2.0
 """A change is told as one of the building that is so many times as likely as one of furniture."""
 CHANGED = 0.05
 """Of the elements of a floor, before either survey is asked: few are rebuilt."""
-_PARTS = 0.1
-"""Of stretches beside one of the same wall that has changed, those that have not."""
+_PARTS = 0.05
+"""Of stretches beside one of the same wall that has changed, those that have not: parts of 4 of 188
+walls of tuning pairs stand, and of buildings at large more."""
 CARRIED = 0.3
 """Likewise of furniture: chairs and desks are carried about, cupboards hardly."""
 _STOOD = 3.3
@@ -162,7 +163,8 @@ def weigh_places(n_for: int, n_against: int) -> float:
 def rate_wall(p_wall: float, p_built_in: float, thick_m: float = 0.0) -> float:
     """Return how likely it is a wall that has changed, and not furniture.
 
-    Furniture is carried more often than walls are built, but for what goes from wall to wall.
+    Furniture is carried more often than walls are built, but for what goes from wall to wall, or
+    is as thin as walls are.
 
     Parameters
     ----------
@@ -177,9 +179,12 @@ def rate_wall(p_wall: float, p_built_in: float, thick_m: float = 0.0) -> float:
     --------
     >>> round(rate_wall(0.8, 0.0), 2), round(rate_wall(0.8, 1.0), 2)
     (0.55, 0.8)
+    >>> round(rate_wall(0.8, 0.0, thick_m=0.1), 2), round(rate_wall(0.8, 0.0, thick_m=0.4), 2)
+    (0.8, 0.07)
     """
-    loose = (1 - p_built_in) * _STOOD * (_DEEP_TELLS if thick_m >= _DEEP_M else 1.0)
-    furniture = (1 - p_wall) * (p_built_in + loose)
+    is_thin = 0 < thick_m < _DEEP_M
+    loose = 1.0 if is_thin else _STOOD * (_DEEP_TELLS if thick_m else 1.0)
+    furniture = (1 - p_wall) * (p_built_in + (1 - p_built_in) * loose)
     return p_wall / (p_wall + furniture)
 
 

@@ -1,5 +1,6 @@
 """Walls of two surveys compared: stretch by stretch, by their faces first, then by rays."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,16 @@ from scanplan.changes import ray_cells, verdicts
 from scanplan.changes.face_shifts import FaceShifts
 from scanplan.changes.ray_cells import AT_M, CELL_M
 from scanplan.changes.surveys import Survey
-from scanplan.changes.verdicts import GONE, LIKELY, MOVED, NEW, SAME, SIGMAS, Change
+from scanplan.changes.verdicts import (
+    GONE,
+    LIKELY,
+    MOVED,
+    NEW,
+    NOT_SEEN,
+    SAME,
+    SIGMAS,
+    Change,
+)
 from scanplan.changes.wall_cells import Wall, hold_walls, list_walls
 from scanplan.changes.wall_rays import (
     HIT,
@@ -29,6 +39,7 @@ from scanplan.changes.wall_shifts import WallShifts, find_shifts
 from scanplan.plan.floorplan import centrelines_m
 from scanplan.types import BoolArray, FloatArray, IntArray
 
+_COSINE = math.cos(math.radians(10))  # of walls in one line
 _LEAST_M = 0.3  # of a stretch: a shorter one may be a jamb, or what ends err by
 _OPENING_M = 0.3  # an opening this near to a wall's line is in it, wherever the other survey has it
 
@@ -88,7 +99,8 @@ class _Judged:
 
 def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     """Yield what another survey shows of the walls of one."""
-    others = {wall.number: wall for wall in list_walls(by)}
+    drawn = list(list_walls(by))
+    others = {wall.number: wall for wall in drawn}
     judged = list(_judge_walls(of, by, shifts))
     # of a curved one each piece
     away: dict[int, float] = {}
@@ -104,7 +116,24 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             with_it[stretch.cells] = 1.0
             p_built_in = wall.rate_built_in(float(with_it[~each.is_open].mean()))
             p_wall = verdicts.rate_wall(wall.p_true, p_built_in, 2 * wall.half_m)
-            yield tell_rays(stretch, p, p_wall)
+            change = tell_rays(stretch, p, p_wall)
+            if change.verdict == NOT_SEEN:
+                # what neither saw, and both have drawn, is told once
+                change = replace(change, number_b=_find_along(each.wall, stretch.cells, drawn))
+            yield change
+
+
+def _find_along(wall: Wall, cells: slice, others: Sequence[Wall]) -> int:
+    """Return the number of the other survey's wall all along a stretch, -1 where it has none."""
+    ends_m = wall.line.at(np.array([cells.start, cells.stop]) * CELL_M)
+    for other in others:
+        along_m, off_m = other.line.along_m(ends_m), np.abs(other.line.offset_m(ends_m))
+        low_m, high_m = other.span_m
+        is_along = low_m - CELL_M <= along_m.min() and along_m.max() <= high_m + CELL_M
+        is_parallel = abs(float(other.line.normal @ wall.line.normal)) >= _COSINE
+        if is_along and is_parallel and off_m.max() <= wall.half_m + other.half_m + AT_M:
+            return other.number
+    return -1
 
 
 def _judge_walls(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[_Judged]:
