@@ -85,7 +85,7 @@ def summarise_growth(grown: Grown) -> list[str]:
         f"{name}: {say_count(n_scans, 'scan')}, {length_m:.1f} m of wall that no other saw"
         for name, n_scans, length_m in zip(grown.names, grown.n_scans, alone_m, strict=True)
     ]
-    lines.append(f"together: {shared_m:.1f} m of wall more")
+    lines.append(f"seen by more than one: {shared_m:.1f} m of wall")
     for (before, after), step in zip(pairwise(grown.names), grown.steps, strict=True):
         said = change_table.summarise_changes(step.changes)
         lines += [f"{before} to {after}: {line}" for line in said]
