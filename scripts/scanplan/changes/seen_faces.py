@@ -75,6 +75,8 @@ def list_seen_faces(plan: FloorPlan) -> SeenFaces:
     wall = plan.faces["wall"].astype(np.int64)
     sigma_m = [of_wall.get(w, s) for w, s in zip(wall.tolist(), own_m.tolist(), strict=True)]
     is_wanted = (plan.faces["state"] == "observed") & (line_lengths_m(ends_m) >= _LEAST_LENGTH_M)
+    # openings tell where reveals are
+    is_wanted &= ~plan.reveals
     normal = np.column_stack([plan.faces["nx"], plan.faces["ny"]])
     sigma_m = np.maximum(np.nan_to_num(sigma_m, nan=_LEAST_SIGMA_M), _LEAST_SIGMA_M)
     p_wall = np.array([p_of_wall.get(w, 0.0) for w in wall.tolist()])

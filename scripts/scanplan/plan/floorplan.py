@@ -38,6 +38,7 @@ WAYS = ("door", "passage")
 NUMBERS = {"walls": "wall", "faces": "face", "openings": "opening", "rooms": "room"}
 """Tables of elements to the columns that number their rows."""
 _ENDS = ("x0_m", "y0_m", "x1_m", "y1_m")
+_ACROSS = 0.5  # cosine of 60 degrees: reveals are built square, and are short
 _CLEARANCE_M = 0.02  # an opening is cut this much deeper than its wall, so that no skin is left
 _GRID_M = 1e-4  # of corners: a tenth of a millimetre, what drawings are rounded to
 
@@ -259,11 +260,27 @@ class FloorPlan:
         return self.wall_shapes.take(self.thick).draw_footprints()
 
     @cached_property
+    def reveals(self) -> BoolArray:
+        """Which faces (n,) are across the straight wall that they are of."""
+        hosts = self._find_walls(self.faces)
+        face_m, wall_m = (
+            np.diff(centrelines_m(of), axis=1)[:, 0] for of in (self.faces, self.walls)
+        )
+        is_straight = np.append(~self.wall_shapes.is_bent, False)
+        wall_m = np.append(wall_m, [[np.nan, np.nan]], axis=0)[hosts]
+        along_m = np.abs(np.einsum("ij,ij->i", face_m, wall_m))
+        lengths_m = np.hypot(*face_m.T) * np.hypot(*wall_m.T)
+        return is_straight[hosts] & (along_m < _ACROSS * lengths_m)
+
+    @cached_property
     def hosts(self) -> IntArray:
         """The row of the wall that each opening is in, (m,); -1 if it is in none."""
-        row_of_wall = {wall: row for row, wall in enumerate(self.walls["wall"].tolist())}
-        rows = [row_of_wall.get(wall, -1) for wall in self.openings["wall"].tolist()]
-        return np.array(rows, np.int64)
+        return self._find_walls(self.openings)
+
+    def _find_walls(self, columns: Columns) -> IntArray:
+        """Return the rows of the walls that elements (n,) are of, -1 of none."""
+        row_of = {wall: row for row, wall in enumerate(self.walls["wall"].tolist())}
+        return np.array([row_of.get(wall, -1) for wall in columns["wall"].tolist()], np.int64)
 
     @cached_property
     def partings(self) -> BoolArray:

@@ -10,7 +10,6 @@ from scanplan.types import BoolArray, FloatArray
 
 _SQUARE_M = 0.03  # walls off by less are straight and square, as DIN 18202 lets them be built
 _SIGMAS = 3.0  # beyond as many, a wall is known to lie where it does
-_SQUARE = 0.5  # cosine of 60 degrees: reveals are built square, and are short
 _REVEAL_SIGMA_M = 0.015  # of where reveals end (facades of the bench's tuning half)
 _FALLBACK_SIGMA_M = 0.01  # of a wall that none is stated of: what is usual of a real survey
 
@@ -95,19 +94,9 @@ def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
         np.asarray(walls["thickness_m"], float),
         np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
         np.asarray(has_left | ~has_right, bool),
-        plan.thick & (has_left != has_right) & _find_across(plan),
+        plan.thick
+        & (has_left != has_right)
+        & np.isin(walls["wall"], plan.faces["wall"][plan.reveals]),
         plan.wall_shapes.is_bent,
         tolerance_m,
     )
-
-
-def _find_across(plan: FloorPlan) -> BoolArray:
-    """Return which straight walls (n,) have faces across their line: reveals."""
-    ways_m, faces_m = (np.diff(centrelines_m(of), axis=1)[:, 0] for of in (plan.walls, plan.faces))
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
-    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
-    own = np.flatnonzero(host >= 0)
-    along_m = np.abs(np.einsum("ij,ij->i", faces_m[own], ways_m[host[own]]))
-    lengths_m = np.hypot(*faces_m[own].T) * np.hypot(*ways_m[host[own]].T)
-    across = host[own][along_m < _SQUARE * lengths_m]
-    return np.isin(np.arange(len(ways_m)), across) & ~plan.wall_shapes.is_bent
