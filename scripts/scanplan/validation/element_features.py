@@ -70,7 +70,12 @@ def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArra
         **{name: np.append(odds, np.nan)[host] for name, odds in _odds_of_walls(plan).items()},
         "agreement": agreement,
         "worst_span": worst,
-        "bounding": surroundings.share_along(centrelines_m(plan.faces), plan.areas),
+        # rooms end at sides that were seen, not at reveals nor at what lies behind
+        "bounding": np.where(
+            plan.reveals | (plan.faces["state"] == "inferred"),
+            np.nan,
+            surroundings.share_along(centrelines_m(plan.faces), plan.areas),
+        ),
     }
 
 
