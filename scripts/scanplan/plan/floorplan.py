@@ -273,6 +273,13 @@ class FloorPlan:
         return is_straight[hosts] & (along_m < _ACROSS * lengths_m)
 
     @cached_property
+    def revealed(self) -> BoolArray:
+        """Which walls (n,) of one side are as thick as reveals are deep."""
+        is_single = (self.walls["face_left"] >= 0) != (self.walls["face_right"] >= 0)
+        of_reveals = self.faces["wall"][self.reveals]
+        return self.thick & is_single & np.isin(self.walls["wall"], of_reveals)
+
+    @cached_property
     def hosts(self) -> IntArray:
         """The row of the wall that each opening is in, (m,); -1 if it is in none."""
         return self._find_walls(self.openings)

@@ -36,7 +36,7 @@ def find_facades(plan: FloorPlan) -> BoolArray:
     no_floor = {name: values[:0] for name, values in plan.free.items()}
     building = envelope.outline_plan(replace(plan, free=no_floor))
     is_blocked |= shapely.contains_xy(building, ways_m[:, :, 1, 0], ways_m[:, :, 1, 1])
-    return ~plan.thick & (is_blocked.mean(axis=1) < 1 / 2)
+    return (~plan.thick | plan.revealed) & (is_blocked.mean(axis=1) < 1 / 2)
 
 
 def find_behind(plan: FloorPlan) -> FloatArray:
@@ -45,8 +45,8 @@ def find_behind(plan: FloorPlan) -> FloatArray:
     What is assumed of a wall lies there.
     """
     left = left_normals(centrelines_m(plan.walls))
-    left_m, right_m = plan.sides_m
-    return np.where((left_m > right_m)[:, None], left, -left)
+    is_seen_from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
+    return np.where(is_seen_from_left[:, None], -left, left)
 
 
 def limit_backs(walls: WallLines, behind_m: FloatArray) -> FloatArray:

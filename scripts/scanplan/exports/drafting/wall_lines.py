@@ -94,9 +94,7 @@ def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
         np.asarray(walls["thickness_m"], float),
         np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
         np.asarray(has_left | ~has_right, bool),
-        plan.thick
-        & (has_left != has_right)
-        & np.isin(walls["wall"], plan.faces["wall"][plan.reveals]),
+        plan.revealed,
         plan.wall_shapes.is_bent,
         tolerance_m,
     )
