@@ -204,6 +204,8 @@ def test_a_facade_is_as_thick_as_its_reveals_are_deep(deep_m, thick_m):
     assert regular.walls["thickness_m"][east] == pytest.approx(thick_m)
     assert regular.walls["thickness_from"][east] == REVEALS
     assert drafted.n_revealed == 1
+    reveals_m = centrelines_m(regular.faces)[regular.reveals]
+    assert np.ptp(reveals_m[:, :, 0], axis=1) == pytest.approx([thick_m, thick_m], abs=1e-6)
 
 
 def test_a_facade_without_reveals_is_as_thick_as_those_with():

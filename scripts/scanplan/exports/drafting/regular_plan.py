@@ -196,7 +196,9 @@ def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
     lines_m = centrelines_m(plan.faces)
     for face, wall in enumerate(plan.faces["wall"].tolist()):
         if wall in row_of:
-            lines_m[face] = moved.move_points(lines_m[face], row_of[wall])
+            # a reveal leads from one side to the other
+            parts_m = np.split(lines_m[face], 2 if plan.reveals[face] else 1)
+            lines_m[face] = np.concatenate([moved.move_points(m, row_of[wall]) for m in parts_m])
     return {**plan.faces, **line_columns(lines_m)}
 
 
