@@ -49,7 +49,7 @@ def evaluate_plan(
     scans = registered_scans.read_registered_scans(registration)
     track = truth_file.read_true_poses(true_poses)
     placed = truth_file.interpolate_true_poses(track, scans.t_ns, true_poses)
-    drawn = plan_metrics.read_plan_tables(inputs)
+    drawn = plan_metrics.leave_unseen_sides(plan_metrics.read_plan_tables(inputs))
     plan_scan_ids = plan_metrics.evidence_scan_ids(evidence)
     rows = registered_scans.rows_of_scans(plan_scan_ids, scans, evidence, registration)
     floor = wall_findings.observe_truth(

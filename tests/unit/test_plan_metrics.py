@@ -163,3 +163,16 @@ def test_thicknesses_that_cannot_be_compared_are_no_figures():
         has_heights=True,
     )
     assert_told(of_known, value=("2 thicknesses", "0.010 m", "0.020"))
+
+
+def test_sides_that_nobody_saw_and_reveals_are_not_held_against_true_faces():
+    """Two walls along x: of one the north is seen, of the other both sides; a face in none."""
+    rows = [(0, 1, "observed", 0), (0, -1, "inferred", 0), (1, 0, "observed", 0),
+            (0, 1, "inferred", 1), (0, -1, "observed", 1), (0, 1, "observed", 1),
+            (0, -1, "inferred", -1)]  # fmt: skip
+    nx, ny, state, wall = map(np.array, zip(*rows, strict=True))
+    ends = {"x0_m": np.zeros(2), "y0_m": np.zeros(2), "x1_m": np.full(2, 4.0), "y1_m": np.zeros(2)}
+    walls = {"wall": np.array([0, 1]), **ends, "arc_radius_m": np.full(2, np.nan)}
+    faces = {"face": np.arange(7), "nx": nx, "ny": ny, "state": state, "wall": wall}
+    left = plan_metrics.leave_unseen_sides({"faces": faces, "walls": walls})
+    assert left["faces"]["face"].tolist() == [0, 3, 4, 5, 6]

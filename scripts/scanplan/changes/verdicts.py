@@ -248,7 +248,7 @@ def rate_along(weights: Sequence[float]) -> FloatArray:
     Examples
     --------
     >>> rate_along([729, 1, 0.1]).round(2).tolist(), rate_along([1, 0.02, 1]).round(2).tolist()
-    ([0.91, 0.58, 0.27], [0.01, 0.0, 0.01])
+    ([0.88, 0.65, 0.42], [0.0, 0.0, 0.0])
     """
     prior = np.array([1 - CHANGED, CHANGED])
     parts = _PARTS * np.array([CHANGED / (1 - CHANGED), 1.0])
