@@ -128,6 +128,20 @@ def test_a_thickness_of_a_wall_known_by_reveals_is_behind_its_only_side(revealed
     ]
 
 
+@pytest.mark.parametrize("thickness_m", [0.8, 1.0])
+def test_a_wall_that_is_twice_as_thick_or_more_grows_behind_as_well(revealed, thickness_m):
+    found = corrected(revealed, {"element": "wall", "at": [7.2, 0.5], "thickness_m": thickness_m})
+    x_m = np.sort(faces_of(found, 1)[:, :, 0], axis=1)
+    back_m = 7.1 + thickness_m
+    assert sorted(x_m.ravel().tolist()) == pytest.approx([7.1] * 4 + [back_m] * 6)
+
+
+def test_a_wall_of_one_side_is_gone_with_it_whatever_lay_behind(revealed):
+    found = corrected(revealed, {"element": "face", "at": [7.1, 0.5], "action": "remove"})
+    assert 1 not in found.walls["wall"] and not len(faces_of(found, 1))
+    assert 3 not in found.openings["opening"]
+
+
 def test_a_window_that_is_none_has_no_reveals(revealed):
     found = corrected(revealed, {"element": "opening", "at": [7.3, 1.5], "action": "remove"})
     lines_m = faces_of(found, 1)

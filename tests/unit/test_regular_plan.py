@@ -206,6 +206,8 @@ def test_a_facade_is_as_thick_as_its_reveals_are_deep(deep_m, thick_m):
     assert drafted.n_revealed == 1
     reveals_m = centrelines_m(regular.faces)[regular.reveals]
     assert np.ptp(reveals_m[:, :, 0], axis=1) == pytest.approx([thick_m, thick_m], abs=1e-6)
+    # the side that was seen stays
+    assert regular.bodies[east].bounds[0] == pytest.approx(7.1)
 
 
 def test_a_facade_without_reveals_is_as_thick_as_those_with():

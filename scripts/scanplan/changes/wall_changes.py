@@ -106,6 +106,7 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
     away: dict[int, float] = {}
     for each in judged:
         away[each.wall.number] = max(away.get(each.wall.number, 0.0), each.p_away)
+    revealed = of.plan.walls["wall"][of.plan.revealed]
     held = hold_walls([each.wall for each in judged], of.plan, away)
     for each, wall in zip(judged, held, strict=True):
         for stretch, p in zip(each.stretches, each.rated, strict=True):
@@ -115,7 +116,9 @@ def _compare(of: Survey, by: Survey, shifts: FaceShifts) -> Iterator[Change]:
             with_it = each.p_cells
             with_it[stretch.cells] = 1.0
             p_built_in = wall.rate_built_in(float(with_it[~each.is_open].mean()))
-            p_wall = verdicts.rate_wall(wall.p_true, p_built_in, 2 * wall.half_m)
+            # by both sides alone a thing may be as deep as furniture
+            thick_m = 0.0 if each.wall.number in revealed else 2 * wall.half_m
+            p_wall = verdicts.rate_wall(wall.p_true, p_built_in, thick_m)
             change = tell_rays(stretch, p, p_wall)
             if change.verdict == NOT_SEEN:
                 # what neither saw, and both have drawn, is told once

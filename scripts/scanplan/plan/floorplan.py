@@ -274,10 +274,12 @@ class FloorPlan:
 
     @cached_property
     def revealed(self) -> BoolArray:
-        """Which walls (n,) of one side are as thick as reveals are deep."""
+        """Which walls (n,) of one side are as thick as reveals are deep: nobody said another."""
         is_single = (self.walls["face_left"] >= 0) != (self.walls["face_right"] >= 0)
         of_reveals = self.faces["wall"][self.reveals]
-        return self.thick & is_single & np.isin(self.walls["wall"], of_reveals)
+        said = [str(word).startswith(schemas.DRAWN) for word in self.walls["corrected"]]
+        is_said = np.array(said, bool)
+        return self.thick & is_single & ~is_said & np.isin(self.walls["wall"], of_reveals)
 
     @cached_property
     def hosts(self) -> IntArray:

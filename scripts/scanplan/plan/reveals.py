@@ -176,7 +176,9 @@ def _rejoin(before: Sequence[PlanWall], walls: Sequence[PlanWall]) -> Iterator[P
                 nearest = int(off_m.argmin())
                 by_m = now_m[int(met.which[nearest])] - float(met.place_m[nearest])
                 ends_m[name] = getattr(old, name) + by_m
-        yield replace(new, **ends_m)
+        moved = replace(new, **ends_m)
+        # a curved wall ends beside its chord; a short one may lie in what is thick now
+        yield new if new.bend or moved.length_m <= 0 else moved
 
 
 def _find_hosts(walls: Sequence[PlanWall]) -> Iterator[tuple[int, int]]:
@@ -186,13 +188,16 @@ def _find_hosts(walls: Sequence[PlanWall]) -> Iterator[tuple[int, int]]:
         if wall.bend or wall.openings or wall.length_m > _DEEPEST_M:
             continue
         met = intersections.find_crossings(wall.line, spans, reach_m=END_M).which.tolist()
-        yield from [(row, host) for host in met if _is_reveal(walls[host], wall)][:1]
+        middle_m = wall.ends.mean(axis=0)
+        hosts = [host for host in met if _is_reveal(walls[host], wall)]
+        if hosts:
+            yield row, min(hosts, key=lambda n: abs(float(walls[n].line.offset_m(middle_m))))
 
 
 def _is_reveal(host: PlanWall, wall: PlanWall) -> bool:
     """Return whether a wall lies in another's thickness, and all its faces look into openings."""
     is_across = intersections.run_across(host.line, wall.line)
-    if host.bend or np.isnan(host.thickness_m) or not is_across:
+    if host.bend or np.isnan(host.thickness_m) or not is_across or not wall.members:
         return False
     off_m = np.abs(host.line.offset_m(wall.ends)).max()
     jambs = [(jamb_m, into) for _, jamb_m, into in list_jambs(host)]

@@ -136,13 +136,13 @@ def _face_surfaces(plan: FloorPlan, span_m: float, *, planar: bool) -> Iterator[
     is_low = dict(zip(plan.walls["wall"].tolist(), plan.low.tolist(), strict=True))
     openings_m = centrelines_m(plan.openings)
     lines_m = centrelines_m(plan.faces)
-    numbered = zip(plan.faces["face"].tolist(), plan.faces["wall"].tolist(), lines_m, strict=True)
-    for face, wall, ends_m in numbered:
+    numbers = (plan.faces[name].tolist() for name in ("face", "wall"))
+    for face, wall, ends_m, is_reveal in zip(*numbers, lines_m, plan.reveals, strict=True):
         ends_low = is_low.get(wall, False) and not planar
         z_m = (-np.inf, tops_m[wall]) if ends_low else _EVERYWHERE_M
         span = 0
         # openings in no wall (-1) are none of every face in no wall
-        is_own = (plan.openings["wall"] == wall) & (wall >= 0)
+        is_own = (plan.openings["wall"] == wall) & (wall >= 0) & ~is_reveal
         for part_m in _cut_out(ends_m, openings_m[is_own]):
             n_spans = _count_spans(part_m, span_m)
             yield _Surface(part_m, z_m, element=(FACE, face, span), n_spans=n_spans)

@@ -64,7 +64,7 @@ def adjust_walls(walls: WallLines, wanted: Wanted) -> Adjusted:
 
 def _solve(walls: WallLines, priors: Sequence[Prior]) -> FloatArray:
     n_walls = len(walls.sigma_m)
-    sigma_m = np.concatenate([np.repeat(walls.sigma_m, 2), np.sqrt(2) * walls.sigma_m])
+    sigma_m = np.concatenate([np.repeat(walls.sigma_m, 2), walls.sigma_thickness_m])
     if not priors:
         return np.zeros(3 * n_walls)
     rows = [row for row, prior in enumerate(priors) for _ in prior.columns]

@@ -54,10 +54,14 @@ class MovedWalls:
 
 
 def move_walls(walls: WallLines, wanted: Wanted, adjusted: Adjusted) -> MovedWalls:
-    """Return walls as adjusted, their ends not yet joined."""
+    """Return walls as adjusted, their ends not yet joined.
+
+    What reveals show the thickness of grows behind the side that was seen.
+    """
     angles_rad = walls.angles_rad + wanted.turn_rad
     left = np.column_stack([-np.sin(angles_rad), np.cos(angles_rad)])
-    lines_m = walls.lines_m + adjusted.shift_m[..., None] * left[:, None]
+    behind_m = np.where(walls.is_seen_from_left, -0.5, 0.5) * adjusted.grown_m * walls.is_revealed
+    lines_m = walls.lines_m + (adjusted.shift_m + behind_m[:, None])[..., None] * left[:, None]
     return MovedWalls(walls, lines_m, adjusted.grown_m)
 
 

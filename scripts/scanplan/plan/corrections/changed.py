@@ -15,6 +15,7 @@ _FRONT_M = 0.1
 """ASSUME of furniture of which one side was seen, that was drawn as a wall: of a thin shelf."""
 _SIGMAS = ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m")
 """Columns of how sure a wall's place is by scans, which say nothing of where a person puts it."""
+_ALONG = 0.5  # cosine of 60 degrees: faces turned more against a wall's are reveals
 _LEAST_M = 0.01
 """Of what is left of a face or an opening on a wall that was moved: less is rounding."""
 
@@ -118,13 +119,19 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
         return "is a side of a curved wall, which keeps both; remove the wall, and add walls"
     rows.drop("face", face["face"])
     (lost,) = beside
-    same_side = [row for row in _faces_of(rows, wall) if _normal(row) @ _normal(face) > 0]
+    same_side = [row for row in _faces_of(rows, wall) if _normal(row) @ _normal(face) > _ALONG]
     if same_side:
         wall[lost] = same_side[0]["face"]
-    elif not _faces_of(rows, wall):
+    elif max(number for name, number in sides.items() if name != lost) < 0:
         rows.drop("wall", wall["wall"])
+        rows.faces = [row for row in rows.faces if row["wall"] != wall["wall"]]
         rows.openings = [row for row in rows.openings if row["wall"] != wall["wall"]]
     else:
+        # reveals, which are on no side, ended at the lost one
+        reveals = [
+            row for row in _faces_of(rows, wall) if abs(_normal(row) @ _normal(face)) <= _ALONG
+        ]
+        rows.faces = [row for row in rows.faces if row not in reveals]
         side = 1.0 if lost == "face_right" else -1.0
         off_m = side * added.half_m_of(wall)
         _shift(rows, wall, off_m, np.nan)
@@ -194,14 +201,14 @@ def _shift(rows: PlanRows, wall: Row, off_m: float, thickness_m: float) -> None:
 
     Faces of a wall of known thickness move with its sides.
     """
-    line_m = added.ends_of(wall) + off_m * _left(added.ends_of(wall))
+    line_m = added.ends_of(wall)
     is_known = np.isfinite(wall["thickness_m"]) and np.isfinite(thickness_m)
     left = _left(line_m)
     for row in (wall, *_openings_of(rows, wall)):
         row |= added.end_columns(added.ends_of(row) + off_m * left) | {"thickness_m": thickness_m}
     for face in _faces_of(rows, wall) if is_known else []:
         across_m = (added.ends_of(face) - line_m[0]) @ left
-        by_m = np.sign(across_m) * thickness_m / 2 - across_m
+        by_m = off_m + np.sign(across_m) * thickness_m / 2 - across_m
         face |= added.end_columns(added.ends_of(face) + by_m[:, None] * left)
 
 
