@@ -27,7 +27,7 @@ class WallLines:
     sigma_m : (n,) float64
         Standard deviation of a line's place across it.
     is_seen_from_left : (n,) bool
-        Of walls without a thickness: on which side of them their face was seen.
+        Of walls of one side: on which side of them it was seen.
     is_revealed : (n,) bool
         Which are as thick as reveals are deep behind the one side that was seen.
     is_bent : (n,) bool
@@ -61,7 +61,7 @@ class WallLines:
 
     @cached_property
     def is_thick(self) -> BoolArray:
-        """Of which walls (n,) both sides are known."""
+        """Of which walls (n,) the thickness is known, by both sides or by reveals."""
         return np.isfinite(self.thickness_m)
 
     @cached_property

@@ -167,7 +167,7 @@ def motion_along(
     known_ns = np.unique(np.concatenate(stamps))
     parts: list[tuple[FloatArray, FloatArray, IntArray]] = []
     # a matrix of each of all of them would take more than all else that is known of a long drive
-    for some_ns in np.array_split(known_ns, -(-len(known_ns) // _AT_ONCE)):
+    for some_ns in np.array_split(known_ns, len(known_ns) // _AT_ONCE + 1):
         pose, _, covered = frame_edges.chain_poses(edges, some_ns, max_gap_s=max_gap_s)
         parts.append((*se3.split_pose(pose[covered]), some_ns[covered]))
     xyz_m, quat, known_ns = (np.concatenate(of) for of in zip(*parts, strict=True))
