@@ -126,8 +126,7 @@ def rate_floor(results: Path, floor: Floor) -> Rated:
 
 def _find_further_chords(plan: floorplan.FloorPlan) -> BoolArray:
     """Return which faces (n,) are chords of a side of a curved wall that another stands for."""
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
-    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    host = plan.face_hosts
     centre_m = np.column_stack(
         [np.append(plan.walls[name].astype(float), np.nan)[host] for name in ("arc_x_m", "arc_y_m")]
     )

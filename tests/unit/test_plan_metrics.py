@@ -174,5 +174,6 @@ def test_sides_that_nobody_saw_and_reveals_are_not_held_against_true_faces():
     ends = {"x0_m": np.zeros(2), "y0_m": np.zeros(2), "x1_m": np.full(2, 4.0), "y1_m": np.zeros(2)}
     walls = {"wall": np.array([0, 1]), **ends, "arc_radius_m": np.full(2, np.nan)}
     faces = {"face": np.arange(7), "nx": nx, "ny": ny, "state": state, "wall": wall}
+    faces |= {"x0_m": np.zeros(7), "y0_m": np.zeros(7), "x1_m": ny, "y1_m": -nx}
     left = plan_metrics.leave_unseen_sides({"faces": faces, "walls": walls})
     assert left["faces"]["face"].tolist() == [0, 3, 4, 5, 6]

@@ -49,6 +49,33 @@ def centrelines_m(columns: Columns) -> FloatArray:
     return ends.astype(float).reshape(-1, 2, 2)
 
 
+def find_hosts(walls: Columns, elements: Columns) -> IntArray:
+    """Return the rows of the walls that elements (n,) are of, or in; -1 of none."""
+    row_of = {wall: row for row, wall in enumerate(walls["wall"].tolist())}
+    return np.array([row_of.get(wall, -1) for wall in elements["wall"].tolist()], np.int64)
+
+
+def are_across(lines_m: FloatArray, directions: FloatArray) -> BoolArray:
+    """Return which lines (n, 2, 2) turn by over 60 degrees from directions (n, 2) or (2,)."""
+    own_m = lines_m[:, 1] - lines_m[:, 0]
+    along_m = np.abs(np.sum(own_m * directions, axis=-1))
+    return along_m < _ACROSS * np.hypot(*own_m.T) * np.hypot(*np.transpose(directions))
+
+
+def find_reveals(walls: Columns, faces: Columns) -> BoolArray:
+    """Return which faces (n,) are across the straight wall that they are of."""
+    lines_m = np.append(centrelines_m(walls), np.full((1, 2, 2), np.nan), axis=0)
+    lines_m[:-1][np.isfinite(walls["arc_radius_m"].astype(float))] = np.nan
+    hosts = find_hosts(walls, faces)
+    return are_across(centrelines_m(faces), (lines_m[:, 1] - lines_m[:, 0])[hosts])
+
+
+def find_stated(elements: Columns) -> BoolArray:
+    """Return which rows (n,) a person drew or sized: these are as wide or thick as was said."""
+    said = [word.startswith(schemas.DRAWN) for word in elements["corrected"].tolist()]
+    return np.array(said, bool)
+
+
 def line_columns(lines_m: FloatArray) -> Columns:
     """Return the columns of which `centrelines_m` makes lines (n, 2, 2)."""
     return dict(zip(_ENDS, lines_m.reshape(-1, 4).T.copy(), strict=True))
@@ -197,6 +224,11 @@ class FloorPlan:
         return np.isfinite(self.walls["thickness_m"])
 
     @cached_property
+    def is_seen_from_left(self) -> BoolArray:
+        """Of which walls (n,) the left side is known, or neither is."""
+        return np.asarray((self.walls["face_left"] >= 0) | (self.walls["face_right"] < 0), bool)
+
+    @cached_property
     def sides_m(self) -> tuple[FloatArray, FloatArray]:
         """How far the surfaces of each wall lie from its line, (left (n,), right (n,)), metres.
 
@@ -204,11 +236,8 @@ class FloorPlan:
         """
         half_m = self.walls["thickness_m"] / 2
         behind_m = self.assumed_thickness_m
-        has_left = self.walls["face_left"] >= 0
-        has_right = self.walls["face_right"] >= 0
-        is_seen_from_left = has_left | ~has_right
-        left_m = np.where(is_seen_from_left, 0.0, behind_m)
-        right_m = np.where(is_seen_from_left, behind_m, 0.0)
+        left_m = np.where(self.is_seen_from_left, 0.0, behind_m)
+        right_m = np.where(self.is_seen_from_left, behind_m, 0.0)
         return np.where(self.thick, half_m, left_m), np.where(self.thick, half_m, right_m)
 
     @cached_property
@@ -261,35 +290,25 @@ class FloorPlan:
 
     @cached_property
     def reveals(self) -> BoolArray:
-        """Which faces (n,) are across the straight wall that they are of."""
-        hosts = self._find_walls(self.faces)
-        face_m, wall_m = (
-            np.diff(centrelines_m(of), axis=1)[:, 0] for of in (self.faces, self.walls)
-        )
-        is_straight = np.append(~self.wall_shapes.is_bent, False)
-        wall_m = np.append(wall_m, [[np.nan, np.nan]], axis=0)[hosts]
-        along_m = np.abs(np.einsum("ij,ij->i", face_m, wall_m))
-        lengths_m = np.hypot(*face_m.T) * np.hypot(*wall_m.T)
-        return is_straight[hosts] & (along_m < _ACROSS * lengths_m)
+        """Which faces (k,) are across the straight wall that they are of."""
+        return find_reveals(self.walls, self.faces)
 
     @cached_property
     def revealed(self) -> BoolArray:
         """Which walls (n,) of one side are as thick as reveals are deep: nobody said another."""
         is_single = (self.walls["face_left"] >= 0) != (self.walls["face_right"] >= 0)
-        of_reveals = self.faces["wall"][self.reveals]
-        said = [str(word).startswith(schemas.DRAWN) for word in self.walls["corrected"]]
-        is_said = np.array(said, bool)
-        return self.thick & is_single & ~is_said & np.isin(self.walls["wall"], of_reveals)
+        of_reveals = np.isin(self.walls["wall"], self.faces["wall"][self.reveals])
+        return self.thick & is_single & of_reveals & ~find_stated(self.walls)
+
+    @cached_property
+    def face_hosts(self) -> IntArray:
+        """The row of the wall that each face is of, (k,); -1 if it is of none."""
+        return find_hosts(self.walls, self.faces)
 
     @cached_property
     def hosts(self) -> IntArray:
         """The row of the wall that each opening is in, (m,); -1 if it is in none."""
-        return self._find_walls(self.openings)
-
-    def _find_walls(self, columns: Columns) -> IntArray:
-        """Return the rows of the walls that elements (n,) are of, -1 of none."""
-        row_of = {wall: row for row, wall in enumerate(self.walls["wall"].tolist())}
-        return np.array([row_of.get(wall, -1) for wall in columns["wall"].tolist()], np.int64)
+        return find_hosts(self.walls, self.openings)
 
     @cached_property
     def partings(self) -> BoolArray:

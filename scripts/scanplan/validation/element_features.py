@@ -64,10 +64,11 @@ def describe_elements(plan: FloorPlan, validation: Columns) -> dict[str, dict[st
 
 def _describe_faces(plan: FloorPlan, validation: Columns) -> dict[str, FloatArray]:
     agreement, worst = _agreements(validation, plan.faces["face"])
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
-    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
     return {
-        **{name: np.append(odds, np.nan)[host] for name, odds in _odds_of_walls(plan).items()},
+        **{
+            name: np.append(odds, np.nan)[plan.face_hosts]
+            for name, odds in _odds_of_walls(plan).items()
+        },
         "agreement": agreement,
         "worst_span": worst,
         # rooms end at sides that were seen, not at reveals nor at what lies behind
@@ -85,15 +86,14 @@ def _odds_of_walls(plan: FloorPlan) -> dict[str, FloatArray]:
 
 def _describe_walls(plan: FloorPlan, of_faces: FloatArray) -> dict[str, FloatArray]:
     """Return the features of walls (n,): agreement is that of their faces (m,), by length."""
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
-    host = np.array([row_of.get(wall, -1) for wall in plan.faces["wall"].tolist()], np.int64)
+    host = plan.face_hosts
     has_host = host >= 0
     length_m = np.maximum(line_lengths_m(centrelines_m(plan.faces)), 0.1)[has_host]
     whole_m, sums = (
-        np.bincount(host[has_host], values, len(row_of))
+        np.bincount(host[has_host], values, len(plan.walls["wall"]))
         for values in (length_m, length_m * of_faces[has_host])
     )
-    agreement = np.divide(sums, whole_m, out=np.zeros(len(row_of)), where=whole_m > 0)
+    agreement = np.divide(sums, whole_m, out=np.zeros(len(whole_m)), where=whole_m > 0)
     return {**_odds_of_walls(plan), "agreement": agreement}
 
 

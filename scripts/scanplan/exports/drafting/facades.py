@@ -45,8 +45,7 @@ def find_behind(plan: FloorPlan) -> FloatArray:
     What is assumed of a wall lies there.
     """
     left = left_normals(centrelines_m(plan.walls))
-    is_seen_from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
-    return np.where(is_seen_from_left[:, None], -left, left)
+    return np.where(plan.is_seen_from_left[:, None], -left, left)
 
 
 def limit_backs(walls: WallLines, behind_m: FloatArray) -> FloatArray:

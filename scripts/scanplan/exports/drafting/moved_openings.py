@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes, find_stated
-from scanplan.plan.floorplan import centrelines_m, line_columns
+from scanplan.exports.drafting.nominal_sizes import choose_sizes, find_own_sizes
+from scanplan.plan.floorplan import centrelines_m, find_stated, line_columns
 from scanplan.types import Columns, FloatArray, IntArray
 
 _SIGMA_M = 0.01  # of a width, by good scans

@@ -4,19 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from scanplan.store.schemas import DRAWN
-from scanplan.types import BoolArray, Columns, FloatArray
+from scanplan.types import FloatArray
 
 _ROUNDS = 20  # shares settle in fewer
 _FEWEST_ALIKE = 3  # as many of one size that no catalogue has are a type: two may be so by chance
 _APART = 1.5  # times what one may be off by: between sizes of its own and of the catalogue
 _STEP_M = 0.01  # of such a size: as fine as openings are measured
 _BUILT_SIGMA_M = 0.005  # plaster and boards make walls of one type differ by as much
-
-
-def find_stated(columns: Columns) -> BoolArray:
-    """Return which rows (n,) a person drew or sized: these are as wide or thick as was said."""
-    return np.array([of.startswith(DRAWN) for of in columns["corrected"].tolist()], bool)
 
 
 def choose_sizes(

@@ -165,8 +165,7 @@ def _find_spans(plan: FloorPlan, is_measured: BoolArray) -> FloatArray:
     lines_m = floorplan.centrelines_m(plan.walls)
     # the line of a curved wall without a thickness is its surface
     half_m = np.nan_to_num(np.asarray(plan.walls["thickness_m"], float)) / 2
-    from_left = (plan.walls["face_left"] >= 0) | (plan.walls["face_right"] < 0)
-    aside_m = (np.where(from_left, 1, -1) * half_m)[:, None] * left_normals(lines_m)
+    aside_m = (np.where(plan.is_seen_from_left, 1, -1) * half_m)[:, None] * left_normals(lines_m)
     for row, host in enumerate(plan.hosts.tolist()):
         if host >= 0 and not is_measured[host]:
             spans_m[row] += aside_m[host]

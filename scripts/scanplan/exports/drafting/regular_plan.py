@@ -13,7 +13,6 @@ from scanplan.exports.drafting.facades import find_facades, limit_backs
 from scanplan.exports.drafting.joined_walls import join_walls
 from scanplan.exports.drafting.loose_openings import settle_loose
 from scanplan.exports.drafting.moved_walls import MovedWalls
-from scanplan.exports.drafting.nominal_sizes import find_stated
 from scanplan.exports.drafting.priors import DIRECTION, THICKNESS, THROUGH, want_regular
 from scanplan.exports.drafting.scraps import leave_scraps
 from scanplan.exports.drafting.square_columns import square_columns
@@ -21,7 +20,7 @@ from scanplan.exports.drafting.stubs import cut_stubs
 from scanplan.exports.drafting.wall_lines import gather_lines
 from scanplan.exports.sheet.openings import state_swings
 from scanplan.geometry.lines import left_normals
-from scanplan.plan.floorplan import FloorPlan, centrelines_m, line_columns
+from scanplan.plan.floorplan import FloorPlan, centrelines_m, find_stated, line_columns
 from scanplan.types import Columns, FloatArray
 from scanplan.validation import doubts
 
@@ -192,13 +191,12 @@ def _move_openings(plan: FloorPlan, settings: DraftSettings) -> Columns:
 
 
 def _move_faces(plan: FloorPlan, moved: MovedWalls) -> Columns:
-    row_of = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
     lines_m = centrelines_m(plan.faces)
-    for face, wall in enumerate(plan.faces["wall"].tolist()):
-        if wall in row_of:
+    for face, wall in enumerate(plan.face_hosts.tolist()):
+        if wall >= 0:
             # a reveal leads from one side to the other
             parts_m = np.split(lines_m[face], 2 if plan.reveals[face] else 1)
-            lines_m[face] = np.concatenate([moved.move_points(m, row_of[wall]) for m in parts_m])
+            lines_m[face] = np.concatenate([moved.move_points(m, wall) for m in parts_m])
     return {**plan.faces, **line_columns(lines_m)}
 
 

@@ -147,11 +147,9 @@ def _find_openings(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Boo
 
 def _cut_faces(plan: FloorPlan, cut_m: FloatArray, is_cut: BoolArray) -> Columns:
     """Return faces as far as their walls go; those that lie in what is cut are left out."""
-    rows = {wall: row for row, wall in enumerate(plan.walls["wall"].tolist())}
     faces_m = centrelines_m(plan.faces)
     is_left = np.ones(len(faces_m), bool)
-    for face, number in enumerate(plan.faces["wall"].tolist()):
-        wall = rows.get(number, -1)
+    for face, wall in enumerate(plan.face_hosts.tolist()):
         if wall < 0 or not is_cut[wall].any():
             continue
         span_m = cut_m[wall, 1] - cut_m[wall, 0]

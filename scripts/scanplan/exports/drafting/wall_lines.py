@@ -88,12 +88,11 @@ def gather_lines(plan: FloorPlan, tolerance_m: float) -> WallLines:
     """Return the walls of a plan as lines."""
     walls = plan.walls
     sigma_m = np.asarray(walls["sigma_offset_m"], float)
-    has_left, has_right = walls["face_left"] >= 0, walls["face_right"] >= 0
     return WallLines(
         centrelines_m(walls),
         np.asarray(walls["thickness_m"], float),
         np.where(np.isfinite(sigma_m) & (sigma_m > 0), sigma_m, _FALLBACK_SIGMA_M),
-        np.asarray(has_left | ~has_right, bool),
+        plan.is_seen_from_left,
         plan.revealed,
         plan.wall_shapes.is_bent,
         tolerance_m,

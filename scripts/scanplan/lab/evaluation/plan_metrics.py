@@ -13,11 +13,11 @@ from scanplan.lab.evaluation import length_metrics, opening_metrics, wall_findin
 from scanplan.lab.evaluation.face_cells import FaceCells
 from scanplan.lab.evaluation.true_plan import TruePlan
 from scanplan.lab.evaluation.wall_findings import JUDGED, WITHIN_M, VisibleTruth
+from scanplan.plan.floorplan import centrelines_m, find_hosts, find_reveals
 from scanplan.rays.face_raster import CELL_M
 from scanplan.store import schemas, tables
 from scanplan.types import BoolArray, Columns, FilePath, FloatArray, IntArray
 
-_ALONG = 0.5  # cosine of 60 degrees: faces turned more against their walls are reveals
 _MISPLACED_M = 0.30  # farther off a face is another one: twice a thin wall's thickness
 _DOORS = ("door", "passage")
 _WINDOWS = ("window", "glass")
@@ -45,13 +45,11 @@ def leave_unseen_sides(drawn: Mapping[str, Columns]) -> dict[str, Columns]:
     Of these, inferred from how deep openings are, true faces that rooms look at say nothing.
     """
     faces, walls = drawn["faces"], drawn["walls"]
-    row_of = {wall: row for row, wall in enumerate(walls["wall"].tolist())}
-    host = np.array([row_of.get(wall, -1) for wall in faces["wall"].tolist()], np.int64)
-    lines_m = np.column_stack([walls[name] for name in ("x0_m", "y0_m", "x1_m", "y1_m")])
-    left = np.append(left_normals(lines_m.reshape(-1, 2, 2)), [[0.0, 0.0]], axis=0)[host]
+    host = find_hosts(walls, faces)
+    left = np.append(left_normals(centrelines_m(walls)), [[0.0, 0.0]], axis=0)[host]
     turn = np.sum(left * np.column_stack([faces["nx"], faces["ny"]]), axis=1)
     side = 2 * host + (turn > 0)
-    is_along = np.abs(turn) >= _ALONG
+    is_along = ~find_reveals(walls, faces)
     is_observed = np.asarray(faces["state"] == "observed", bool)
     is_free = np.append(np.isfinite(walls["arc_radius_m"].astype(float)), True)[host]
     kept = is_free | (is_along & np.isin(side, side[is_observed & is_along]))

@@ -112,9 +112,9 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     if np.diff(line_m @ along)[0] < 0:
         line_m = line_m[::-1]
     half_m = half_m_of(wall)
-    own = [row for row in rows.faces if row["wall"] == wall["wall"]]
-    reveals = [row for row in own if _is_reveal(ends_of(row), line_m, along)]
-    rows.faces = [row for row in rows.faces if row not in reveals]
+    for face in [row for row in rows.faces if row["wall"] == wall["wall"]]:
+        if is_across(face, along) and _is_at_end(face, line_m, along):
+            rows.drop("face", face["face"])
     if half_m > 0 or wall["face_left"] >= 0:
         add_face(rows, wall["wall"], line_m, half_m)
     if half_m > 0 or wall["face_right"] >= 0:
@@ -122,11 +122,15 @@ def close_opening(rows: PlanRows, opening: Row) -> Row | None:
     return wall
 
 
-def _is_reveal(face_m: FloatArray, opening_m: FloatArray, along: FloatArray) -> bool:
-    """Return whether a face (2, 2) is across a wall at an end of an opening (2, 2) of it."""
-    way_m = face_m[1] - face_m[0]
-    is_across = abs(float(way_m @ along)) < np.hypot(*way_m) / 2
-    return bool(is_across and np.abs((face_m.mean(axis=0) - opening_m) @ along).min() <= END_M)
+def is_across(face: Row, along: FloatArray) -> bool:
+    """Return whether a face is a reveal, by the direction (2,) of its wall there."""
+    return bool(floorplan.are_across(ends_of(face)[None], along)[0])
+
+
+def _is_at_end(face: Row, opening_m: FloatArray, along: FloatArray) -> bool:
+    """Return whether a face lies beside an end of an opening (2, 2) of its wall."""
+    off_m = (ends_of(face).mean(axis=0) - opening_m) @ along
+    return bool(np.abs(off_m).min() <= END_M)
 
 
 def add_face(rows: PlanRows, wall: int, line_m: FloatArray, off_m: float) -> int:

@@ -15,7 +15,6 @@ _FRONT_M = 0.1
 """ASSUME of furniture of which one side was seen, that was drawn as a wall: of a thin shelf."""
 _SIGMAS = ("sigma_offset_m", "sigma_end0_m", "sigma_end1_m")
 """Columns of how sure a wall's place is by scans, which say nothing of where a person puts it."""
-_ALONG = 0.5  # cosine of 60 degrees: faces turned more against a wall's are reveals
 _LEAST_M = 0.01
 """Of what is left of a face or an opening on a wall that was moved: less is rounding."""
 
@@ -119,19 +118,21 @@ def remove_face(rows: PlanRows, face: Row, said: str) -> str | None:
         return "is a side of a curved wall, which keeps both; remove the wall, and add walls"
     rows.drop("face", face["face"])
     (lost,) = beside
-    same_side = [row for row in _faces_of(rows, wall) if _normal(row) @ _normal(face) > _ALONG]
+    along = _along(added.ends_of(wall))
+    own = [(row, added.is_across(row, along)) for row in _faces_of(rows, wall)]
+    same_side = [
+        row for row, is_reveal in own if not is_reveal and _normal(row) @ _normal(face) > 0
+    ]
     if same_side:
         wall[lost] = same_side[0]["face"]
     elif max(number for name, number in sides.items() if name != lost) < 0:
         rows.drop("wall", wall["wall"])
-        rows.faces = [row for row in rows.faces if row["wall"] != wall["wall"]]
         rows.openings = [row for row in rows.openings if row["wall"] != wall["wall"]]
     else:
-        # reveals, which are on no side, ended at the lost one
-        reveals = [
-            row for row in _faces_of(rows, wall) if abs(_normal(row) @ _normal(face)) <= _ALONG
-        ]
-        rows.faces = [row for row in rows.faces if row not in reveals]
+        # they ended at the side that is lost
+        for row, is_reveal in own:
+            if is_reveal:
+                rows.drop("face", row["face"])
         side = 1.0 if lost == "face_right" else -1.0
         off_m = side * added.half_m_of(wall)
         _shift(rows, wall, off_m, np.nan)
